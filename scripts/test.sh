@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+# Sets Oort up with what its tests need and runs them all: style, types, ctest, pytest.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scripts/setup.sh --test
+.venv/bin/ruff check src/python tests/py bench
+.venv/bin/ruff format --check src/python tests/py bench
+.venv/bin/mypy
+ctest --test-dir build/dev --output-on-failure -j 2
+.venv/bin/python -m pytest -q "$@"

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <memory>
+
+#include "oort/bindings/bindings.hpp"
+#include "oort/mapping/mapper.hpp"
+#include "oort/mapping/odometry_buffer.hpp"
+
+namespace py = pybind11;
+
+namespace oort {
+namespace {
+
+using PoseTuple = std::tuple<double, double, double>;
+
+Pose2 pose_of(const PoseTuple& t) { return {std::get<0>(t), std::get<1>(t), std::get<2>(t)}; }
+PoseTuple tuple_of(const Pose2& p) { return {p.x, p.y, p.theta}; }
+
+const char* name_of(ScanOutcome outcome) {
+  switch (outcome) {
+    case ScanOutcome::kNode: return "node";
+    case ScanOutcome::kCarried: return "carried";
+    case ScanOutcome::kSkipped: return "skipped";
+  }
+  return "";
+}
+
+py::dict dict_of(const ClosureCounts& counts) {
+  py::dict dict;
+  dict["tried"] = counts.tried;
+  dict["accepted"] = counts.accepted;
+  dict["refused"] = py::cast(counts.refused);
+  return dict;
+}
+
+py::dict dict_of(const MapperStatistics& statistics) {
+  py::dict dict;
+  dict["scans"] = statistics.scans;
+  dict["scans_too_small"] = statistics.scans_too_small;
+  dict["scans_matched"] = statistics.scans_matched;
+  dict["nodes"] = statistics.nodes;
+  dict["odometry_links"] = statistics.odometry_links;
+  dict["match_refusals"] = py::cast(statistics.match_refusals);
+  dict["loops"] = dict_of(statistics.loops);
+  dict["docks"] = dict_of(statistics.docks);
+  dict["solves"] = statistics.solves;
+  return dict;
+}
+
+LaserScan scan_of(double time, double angle_min, double angle_increment, double range_min, double range_max,
+                  const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges) {
+  return {time,      angle_min, angle_increment,
+          range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
+}
+
+std::vector<std::tuple<std::string, std::string, std::uint64_t, PoseTuple>> locations_of(const Mapper& mapper) {
+  std::vector<std::tuple<std::string, std::string, std::uint64_t, PoseTuple>> list;
+  for (const Location& l : mapper.map().locations) {
+    list.emplace_back(l.name_space, l.id, l.node_id, tuple_of(l.T_node_location));
+  }
+  return list;
+}
+
+void bind_odometry(py::module_& m) {
+  py::class_<OdometryBuffer>(m, "OdometryBuffer", "Odometry poses by time, interpolated at a scan's stamp.")
+      .def(py::init<double>(), py::arg("horizon") = 0.0,
+           "Poses older than `horizon` [s] before the newest are dropped; 0 keeps all.")
+      .def(
+          "add", [](OdometryBuffer& b, double t, double x, double y, double theta) { b.add(t, {x, y, theta}); },
+          py::arg("time"), py::arg("x"), py::arg("y"), py::arg("theta"), "Adds T_odom_base at a time [s].")
+      .def(
+          "lookup",
+          [](const OdometryBuffer& b, double t) -> std::optional<PoseTuple> {
+            const auto pose = b.lookup(t);
+            return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
+          },
+          py::arg("time"), "T_odom_base (x, y, theta) at a time [s]; None outside the times held.")
+      .def("clear", &OdometryBuffer::clear)
+      .def("__len__", &OdometryBuffer::size);
+}
+
+void bind_scan_result(py::module_& m) {
+  py::class_<ScanResult>(m, "ScanResult", "What became of a scan.")
+      .def_property_readonly("outcome", [](const ScanResult& r) { return name_of(r.outcome); },
+                             "\"node\", \"carried\" (located relative to the last node) or \"skipped\" (too few returns)")
+      .def_readonly("node_id", &ScanResult::node_id, "The node that the pose is relative to, or None.")
+      .def_property_readonly("T_node_sensor", [](const ScanResult& r) { return tuple_of(r.T_node_sensor); },
+                             "The sensor's pose (x, y, theta) seen from the node.")
+      .def_readonly("hit_fraction", &ScanResult::hit_fraction, "Share of the returns that hit the local map.")
+      .def_readonly("status", &ScanResult::status, "What the scan matcher said; empty if it was not asked.");
+}
+
+}  // namespace
+
+void bind_mapping(py::module_& m) {
+  bind_odometry(m);
+  bind_scan_result(m);
+  py::class_<Mapper>(m, "Mapper", "Turns scans with odometry into a map. Not thread-safe.")
+      .def(py::init([](const Parameters& p, const PoseTuple& pose) { return std::make_unique<Mapper>(p, pose_of(pose)); }),
+           py::arg("parameters"), py::arg("sensor_on_base") = PoseTuple{0.0, 0.0, 0.0})
+      .def(
+          "add_scan",
+          [](Mapper& mapper, double time, double angle_min, double angle_increment, double range_min, double range_max,
+             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry) {
+            const LaserScan scan = scan_of(time, angle_min, angle_increment, range_min, range_max, ranges);
+            const py::gil_scoped_release release;
+            return mapper.add_scan(scan, pose_of(odometry));
+          },
+          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"),
+          py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
+          "Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then.")
+      .def("notify_docked", &Mapper::notify_docked, py::call_guard<py::gil_scoped_release>(),
+           "Links the current place to the dock. Whether a closure was found.")
+      .def("begin_session", [](Mapper& mapper, const PoseTuple& pose) { mapper.begin_session(pose_of(pose)); },
+           py::arg("sensor_on_map"), "The next scan begins a new chain at about this pose of the map.")
+      .def("resume_from_paused", &Mapper::resume_from_paused,
+           "The next scan makes a node whose link to the last one is very uncertain.")
+      .def("finish", &Mapper::finish, py::call_guard<py::gil_scoped_release>(), "Brings the map to its final solution.")
+      .def("map", [](const Mapper& mapper) { return Map(mapper.map()); }, "A snapshot of the map.")
+      .def("set_map", [](Mapper& mapper, const Map& map) { mapper.set_map(map); }, py::arg("map"),
+           "Replaces everything by a map from elsewhere.")
+      .def_property_readonly("num_nodes", [](const Mapper& mapper) { return mapper.map().graph.nodes.size(); })
+      .def_property_readonly("has_pose", &Mapper::has_pose, "Whether the sensor's pose in the map is known.")
+      .def_property_readonly("sensor_pose", [](const Mapper& mapper) { return tuple_of(mapper.sensor_pose()); },
+                             "The latest scan's T_map_sensor at the current solution.")
+      .def_property_readonly("odom_pose", [](const Mapper& mapper) { return tuple_of(mapper.T_map_odom()); },
+                             "T_map_odom at the current solution.")
+      .def("create_location",
+           [](Mapper& mapper, const std::string& name_space, const std::string& id, const PoseTuple& pose) {
+             mapper.create_location(name_space, id, pose_of(pose));
+           },
+           py::arg("name_space"), py::arg("id"), py::arg("pose"), "Names a pose of the map.")
+      .def("create_points",
+           [](Mapper& mapper, const std::vector<std::string>& name_spaces,
+              const std::vector<std::array<double, 2>>& points, const std::vector<std::string>& ids) {
+             std::vector<Eigen::Vector2d> vectors;
+             for (const auto& p : points) vectors.emplace_back(p[0], p[1]);
+             mapper.create_points(name_spaces, vectors, ids);
+           },
+           py::arg("name_spaces"), py::arg("points"), py::arg("ids"),
+           "Names points of the map, relative to the node nearest to their centroid.")
+      .def("delete_location", &Mapper::delete_location, py::arg("name_space"), py::arg("id"))
+      .def("locate",
+           [](const Mapper& mapper, const std::string& name_space, const std::string& id) -> std::optional<PoseTuple> {
+             const auto pose = mapper.locate(name_space, id);
+             return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
+           },
+           py::arg("name_space"), py::arg("id"), "The place's pose in the map now, or None.")
+      .def_property_readonly("locations", &locations_of, "(namespace, id, node id, T_node_location) of each place.")
+      .def_property_readonly("statistics", [](const Mapper& mapper) { return dict_of(mapper.statistics()); },
+                             "Counts since the mapper was made.");
+}
+
+}  // namespace oort

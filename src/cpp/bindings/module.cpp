@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/pybind11.h>
+
+#include "oort/bindings/bindings.hpp"
+#include "oort/geometry/errors.hpp"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_core, m) {
+  m.doc() = "The engine of Oort. Use it through the modules of the package oort.";
+  m.attr("__version__") = OORT_VERSION;
+
+  const auto root = py::register_exception<oort::Error>(m, "Error", PyExc_RuntimeError);
+  py::register_exception<oort::ParameterError>(m, "ParameterError", root.ptr());
+  py::register_exception<oort::MapFileError>(m, "MapFileError", root.ptr());
+  py::register_exception<oort::InputError>(m, "InputError", root.ptr());
+  py::register_exception<oort::StateError>(m, "StateError", root.ptr());
+
+  oort::bind_parameters(m);
+  oort::bind_map(m);
+  oort::bind_graph(m);
+  oort::bind_mapping(m);
+}

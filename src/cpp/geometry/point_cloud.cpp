@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/geometry/point_cloud.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "oort/geometry/errors.hpp"
+
+namespace oort {
+
+PointCloud to_point_cloud(const LaserScan& scan) {
+  if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || std::isnan(scan.range_min) ||
+      std::isnan(scan.range_max)) {
+    throw InputError(
+        "laser scan: angle_min, angle_increment, range_min and range_max must be numbers; check the driver that fills "
+        "them in");
+  }
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  PointCloud cloud;
+  cloud.time = scan.time;
+  cloud.points.reserve(scan.ranges.size());
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    if (!std::isfinite(range)) {  // -inf means "too close" (REP 117): as unknown as nan
+      cloud.points.push_back({range > 0.0 ? range : kNan, bearing, kNan});
+      continue;
+    }
+    const bool is_return = range >= scan.range_min && range < scan.range_max;
+    cloud.points.push_back({static_cast<float>(range * std::cos(bearing)), static_cast<float>(range * std::sin(bearing)),
+                            is_return ? 1.0 : kNan});
+  }
+  return cloud;
+}
+
+std::size_t count_returns(const PointCloud& cloud) {
+  return static_cast<std::size_t>(
+      std::count_if(cloud.points.begin(), cloud.points.end(), [](const Point2& p) { return p.is_return(); }));
+}
+
+}  // namespace oort

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapping/dock_graph_builder.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "oort/mapping/frsm_setup.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+
+namespace oort {
+namespace {
+
+/// Up to `size` nodes of the dock's segment: the dock's node and those after it, then those before it; none within
+/// the query's submap, which would match itself.
+std::vector<std::uint64_t> reference_nodes(const Chains& chains, std::uint64_t dock, std::uint64_t size,
+                                           std::uint64_t query_begin, std::uint64_t query) {
+  const bool shared = chains.same_segment(dock, query);
+  std::vector<std::uint64_t> nodes;
+  const auto take = [&](std::uint64_t node) {
+    if (nodes.size() < size && !(shared && node >= query_begin && node <= query)) nodes.push_back(node);
+  };
+  for (std::uint64_t node = dock; node < chains.segment_end(dock); ++node) take(node);
+  for (std::uint64_t node = dock; node > chains.segment_begin(dock); --node) take(node - 1);
+  return nodes;
+}
+
+}  // namespace
+
+DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query) {
+  const Pose2& here = map.graph.nodes[query].pose;
+  DockPlace nearest{chains.segment_begin(query), Pose2{}};
+  double nearest_distance = -1.0;
+  for (const Location& location : map.locations) {
+    if (location.name_space != "dock") continue;
+    const Pose2 T_map_dock = map.graph.nodes[location.node_id].pose * location.T_node_location;
+    const double distance = (T_map_dock.translation() - here.translation()).norm();
+    if (nearest_distance < 0.0 || distance < nearest_distance) {
+      nearest_distance = distance;
+      nearest = {location.node_id, location.T_node_location};
+    }
+  }
+  return nearest;
+}
+
+DockGraphBuilder::DockGraphBuilder(const Parameters& parameters)
+    : parameters_(parameters.dock_graph_builder),
+      table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
+      contours_(contour_params(parameters.incremental_graph_builder.frsm_matcher)),
+      matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
+
+std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chains, std::uint64_t query,
+                                              ClosureCounts& counts) const {
+  ++counts.tried;
+  const DockPlace dock = nearest_dock(map, chains, query);
+  std::string reason;
+  std::optional<Closure> closure;
+  if (dock.node == query) {
+    reason = "same_node";
+  } else {
+    closure = match(map, chains, query, dock, reason);
+  }
+  if (closure) {
+    ++counts.accepted;
+  } else {
+    ++counts.refused[reason];
+  }
+  return closure;
+}
+
+std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
+                                               const DockPlace& dock, std::string& reason) const {
+  const std::uint64_t query_size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
+  const std::uint64_t first =
+      std::max(chains.segment_begin(query), query + 1 - std::min<std::uint64_t>(query_size, query + 1));
+  std::vector<std::uint64_t> query_nodes(query + 1 - first);
+  std::iota(query_nodes.begin(), query_nodes.end(), first);
+  const std::vector<std::uint64_t> reference = reference_nodes(
+      chains, dock.node, static_cast<std::uint64_t>(parameters_.dock_submap_size), first, query);
+  if (reference.empty()) {
+    reason = "no_reference";
+    return std::nullopt;
+  }
+
+  // The robot touches the contacts somewhere along their size, and the dock may have been moved.
+  const double reach = parameters_.dock_contacts_size + parameters_.dock_max_translation;
+  const frsm::Prior prior{to_frsm(dock.T_node_dock),
+                          Eigen::Vector3d(reach * reach, reach * reach,
+                                          parameters_.search_window_theta * parameters_.search_window_theta)
+                              .asDiagonal()};
+  const auto submap = draw_submap(map, chains, dock.node, reference, table_, contours_);
+  const frsm::Match match = matcher_.match(*submap, gather_points(map, chains, query, query_nodes), prior.mean,
+                                           {reach, reach, parameters_.search_window_theta}, &prior);
+  const Pose2 T_dock_query = from_frsm(match.pose);
+  if (match.hit_fraction < parameters_.dock_match_min_hit_pct) {
+    reason = "hits";
+  } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
+    reason = "distance";
+  } else {
+    return Closure{dock.node, query, T_dock_query, match.covariance, match.hit_fraction};
+  }
+  return std::nullopt;
+}
+
+}  // namespace oort

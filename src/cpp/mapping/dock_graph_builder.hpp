@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <frsm/matcher.hpp>
+#include <optional>
+
+#include "oort/mapping/chains.hpp"
+#include "oort/mapping/loop_closure_builder.hpp"
+#include "oort/mapping/map.hpp"
+#include "oort/mapping/statistics.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+/// Where the robot stood at the dock: a node and the sensor's pose seen from it.
+struct DockPlace {
+  std::uint64_t node = 0;
+  Pose2 T_node_dock;
+};
+
+/// The dock nearest to a node: of the locations in the namespace "dock", or, without any, the first node of the node's
+/// segment (REQUIREMENTS C-14).
+DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query);
+
+/// Links a node at the dock to the dock's own node by matching what was last seen with what was seen when the dock was
+/// first left (REQUIREMENTS O-88).
+class DockGraphBuilder {
+ public:
+  explicit DockGraphBuilder(const Parameters& parameters);
+
+  /// The closure from the dock's node to `query`, a node recorded on the dock. Counts the attempt.
+  std::optional<Closure> find(const Map& map, const Chains& chains, std::uint64_t query, ClosureCounts& counts) const;
+
+ private:
+  std::optional<Closure> match(const Map& map, const Chains& chains, std::uint64_t query, const DockPlace& dock,
+                               std::string& reason) const;
+
+  DockGraphBuilderParameters parameters_;
+  frsm::TableParams table_;
+  frsm::ContourParams contours_;
+  frsm::Matcher matcher_;
+};
+
+}  // namespace oort

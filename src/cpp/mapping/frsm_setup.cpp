@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapping/frsm_setup.hpp"
+
+namespace oort {
+
+frsm::TableParams table_params(const FrsmMatcherParameters& p) {
+  frsm::TableParams params;
+  params.cell = p.meters_per_pixel;
+  params.radius = p.max_point_range;
+  return params;
+}
+
+frsm::ContourParams contour_params(const FrsmMatcherParameters& p) {
+  if (p.line_profile == "utm") return frsm::ContourParams::utm();
+  if (p.line_profile == "sick") return frsm::ContourParams::sick();
+  return frsm::ContourParams::urg();
+}
+
+frsm::MatcherParams matcher_params(const FrsmMatcherParameters& p) {
+  frsm::MatcherParams params;
+  params.theta_step = p.theta_resolution;
+  return params;
+}
+
+}  // namespace oort

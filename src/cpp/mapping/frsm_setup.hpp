@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <frsm/contours.hpp>
+#include <frsm/matcher.hpp>
+#include <frsm/table.hpp>
+
+#include "oort/parameters/parameters.hpp"
+
+/// How the parameters of incremental_graph_builder.frsm_matcher, which the chain, the loops and the dock share, read in
+/// the matcher's own terms.
+namespace oort {
+
+frsm::TableParams table_params(const FrsmMatcherParameters& p);
+frsm::ContourParams contour_params(const FrsmMatcherParameters& p);
+frsm::MatcherParams matcher_params(const FrsmMatcherParameters& p);
+
+}  // namespace oort

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapping/incremental_graph_builder.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "oort/mapping/frsm_setup.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+
+namespace oort {
+namespace {
+
+frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
+  frsm::TrackerParams params;
+  params.table = table_params(p);
+  params.contours = contour_params(p);
+  params.matcher = matcher_params(p);
+  params.add = p.key_scan_distance > 0.0 ? frsm::AddRule{} : frsm::AddRule::by_hits(p.add_scan_hit_thresh);
+  if (p.key_scan_distance > 0.0) {
+    params.add.hit_threshold = p.add_scan_hit_thresh;
+    params.add.key_distance = p.key_scan_distance;
+    params.add.key_angle = p.key_scan_angle;
+  }
+  params.max_num_scans = p.max_num_scans;
+  params.initial_search_range_xy = p.initial_search_range_xy;
+  params.initial_search_range_theta = p.initial_search_range_theta;
+  params.max_search_range_xy = std::max(p.max_search_range_xy, p.initial_search_range_xy);
+  params.max_search_range_theta = std::max(p.max_search_range_theta, p.initial_search_range_theta);
+  params.stationary_motion_model = p.stationary_motion_model;
+  return params;
+}
+
+OdometryModel odometry_model(const OdometryNoiseParameters& p) {
+  return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
+          p.rotation_per_radian,   p.translation_floor,      p.rotation_floor};
+}
+
+}  // namespace
+
+IncrementalGraphBuilder::IncrementalGraphBuilder(const Parameters& parameters)
+    : parameters_(parameters.incremental_graph_builder),
+      motion_model_(parameters_.odometry_model == "motion"),
+      odometry_model_(odometry_model(parameters_.odometry_noise)),
+      tracker_(tracker_params(parameters_.frsm_matcher)) {}
+
+void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) { tracker_.reset(to_frsm(T_local_sensor)); }
+
+TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor) {
+  const frsm::Motion motion{to_frsm(T_previous_sensor), prior_covariance(T_previous_sensor)};
+  const frsm::Match match = tracker_.track(points, time, motion);
+  TrackedScan tracked;
+  tracked.T_local_sensor = from_frsm(match.pose);
+  tracked.information = match.information;
+  tracked.covariance = match.covariance;
+  tracked.hit_fraction = match.hit_fraction;
+  tracked.usable = match.usable();
+  tracked.status = frsm::to_string(match.status);
+  return tracked;
+}
+
+ChainLink IncrementalGraphBuilder::link(const Pose2& T_local_previous_node, const Pose2& T_previous_node_odometry,
+                                        TrackedScan& node) {
+  ChainLink link;
+  link.T_previous_node = between(T_local_previous_node, node.T_local_sensor);
+  const Eigen::Matrix3d odometry = odometry_covariance(T_previous_node_odometry);
+  link.refusal = refusal(node, between(T_previous_node_odometry, link.T_previous_node));
+  if (link.refusal.empty()) {
+    link.covariance = match_covariance(node, T_local_previous_node.theta, odometry);
+    return link;
+  }
+  link.type = ConstraintType::kOdometry;
+  link.T_previous_node = T_previous_node_odometry;
+  link.covariance = odometry;
+  node.T_local_sensor = T_local_previous_node * T_previous_node_odometry;
+  tracker_.set_pose(to_frsm(node.T_local_sensor));
+  return link;
+}
+
+std::string IncrementalGraphBuilder::refusal(const TrackedScan& node, const Pose2& T_odometry_match) const {
+  const MatchFilteringParameters& filter = parameters_.frsm_matcher.match_filtering;
+  if (!node.usable) return node.status;
+  if (node.hit_fraction < filter.min_accept_score) return "score";
+  if (T_odometry_match.x < filter.x_min_accept || T_odometry_match.x > filter.x_max_accept) return "x";
+  if (std::abs(T_odometry_match.y) > filter.y_abs_accept) return "y";
+  if (std::abs(T_odometry_match.theta) > filter.theta_abs_accept) return "theta";
+  return "";
+}
+
+Eigen::Matrix3d IncrementalGraphBuilder::prior_covariance(const Pose2& T_before_after) const {
+  if (motion_model_) return odometry_model_.covariance(T_before_after);
+  // The original's prior multiplies scores by exp(-d^2 / w) when w > 0.1: a Gaussian of variance w / 2 on the position
+  // and none on the heading. "None" is written as a turn of one radian, far beyond any search window.
+  const double w = parameters_.frsm_matcher.std_mot_model;
+  const double position = w > 0.1 ? w / 2.0 : 1.0;
+  return Eigen::Vector3d(position, position, 1.0).asDiagonal();
+}
+
+Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_before_after) const {
+  if (motion_model_) return odometry_model_.covariance(T_before_after);
+  return Eigen::Vector3d(parameters_.odom_cov_xx, parameters_.odom_cov_yy, parameters_.odom_cov_tt).asDiagonal();
+}
+
+Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& node, double heading,
+                                                          const Eigen::Matrix3d& odometry) const {
+  // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
+  const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
+  const Eigen::Matrix3d match = rotate_covariance(node.information, -heading) / (scale * scale);
+  const Eigen::Matrix3d covariance = (match + odometry.inverse()).inverse();
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+}  // namespace oort

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <frsm/tracker.hpp>
+#include <string>
+
+#include "oort/geometry/pose2.hpp"
+#include "oort/graph/graph.hpp"
+#include "oort/mapping/odometry_model.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+/// Where the scan matcher says the sensor is, in its own ("local") frame.
+struct TrackedScan {
+  Pose2 T_local_sensor;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the match alone, axes of the local frame
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the match and what was expected, same axes
+  double hit_fraction = 0.0;
+  bool usable = false;
+  std::string status;
+};
+
+/// How a node hangs on the one before it.
+struct ChainLink {
+  Pose2 T_previous_node;
+  Eigen::Matrix3d covariance;  ///< along the axes of the previous node
+  ConstraintType type = ConstraintType::kLaser;
+  std::string refusal;  ///< why the match was refused; empty when it was not
+};
+
+/// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
+/// (REQUIREMENTS O-84, O-85).
+class IncrementalGraphBuilder {
+ public:
+  explicit IncrementalGraphBuilder(const Parameters& parameters);
+
+  /// Starts a fresh local map; its first scan will be at this pose of the local frame.
+  void begin(const Pose2& T_local_sensor);
+
+  /// Takes the next scan: its returns in the sensor frame and the sensor's motion by odometry since the last one taken
+  /// (since begin(): the identity).
+  TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor);
+
+  /// Links the scan just tracked, which becomes a node, to the node before. `T_previous_node_odometry` is the motion
+  /// between the two by odometry. If the match is refused the local pose is corrected to what odometry says.
+  ChainLink link(const Pose2& T_local_previous_node, const Pose2& T_previous_node_odometry, TrackedScan& node);
+
+ private:
+  std::string refusal(const TrackedScan& node, const Pose2& T_odometry_match) const;
+  Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;     // for the matcher
+  Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after) const;  // for a link
+  Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry) const;
+
+  IncrementalGraphBuilderParameters parameters_;
+  bool motion_model_;  // odometry's covariance grows with the motion, else it is constant
+  OdometryModel odometry_model_;
+  frsm::Tracker tracker_;
+};
+
+}  // namespace oort

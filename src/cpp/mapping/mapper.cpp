@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapping/mapper.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "oort/geometry/errors.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+#include "oort/parameters/table.hpp"
+
+namespace oort {
+namespace {
+
+// Variance of x, y and theta of a scan that nothing was matched with: FRSM's value for its first scan (FRSM.md 9).
+constexpr double kUnmatchedVariance = 0.1;
+
+// A closure this far from what the graph expects (99 % of a chi-square of 3 degrees of freedom) is solved at once.
+constexpr double kSurprise = 11.345;
+
+// Otherwise solving waits until the graph has grown by a twentieth, so that the work of all solves together stays in
+// proportion to the graph.
+constexpr std::uint64_t kMinSolveInterval = 10;
+constexpr std::uint64_t kSolveGrowth = 20;
+
+constexpr int kIterationsWhileMapping = 15;
+constexpr int kFinalIterations = 100;
+
+Parameters checked(const Parameters& parameters) {
+  check_parameters(parameters);
+  return parameters;
+}
+
+}  // namespace
+
+Mapper::Mapper(const Parameters& parameters, const Pose2& T_base_sensor)
+    : parameters_(checked(parameters)),
+      T_base_sensor_(T_base_sensor),
+      incremental_(parameters_),
+      loops_(parameters_),
+      docks_(parameters_) {
+  if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
+}
+
+ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
+  if (!is_finite(T_odom_base) || !std::isfinite(scan.time)) {
+    throw InputError("scan: its time or odometry pose is not finite; check the transform odom -> base");
+  }
+  LastScan now;
+  now.cloud = to_point_cloud(scan);
+  now.T_odom_base = T_odom_base;
+  now.T_odom_sensor = T_odom_base * T_base_sensor_;
+  ++statistics_.scans;
+
+  const bool has_points = count_returns(now.cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
+  const bool due = has_points && is_due(T_odom_base);
+  if (has_points && (due || parameters_.incremental_graph_builder.match_every_scan)) {
+    track(now);
+  } else {
+    carry(now);
+  }
+  if (!has_points) ++statistics_.scans_too_small;
+
+  std::optional<std::uint64_t> node;
+  if (due) node = make_node(now);
+  last_scan_ = std::move(now);
+  if (node) close_loops(*node);
+  return result(*last_scan_, node ? ScanOutcome::kNode : has_points ? ScanOutcome::kCarried : ScanOutcome::kSkipped);
+}
+
+bool Mapper::notify_docked() {
+  if (!last_scan_ || map_.graph.nodes.empty()) {
+    throw StateError("notify_docked: no scan has been taken yet, so there is nothing to link; drive and scan first");
+  }
+  std::uint64_t query = map_.graph.nodes.back().id;
+  const bool has_points =
+      count_returns(last_scan_->cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
+  if (!last_scan_->is_node && has_points) {
+    if (!last_scan_->was_tracked) track(*last_scan_);
+    query = make_node(*last_scan_);
+  }
+  const std::optional<Closure> closure = docks_.find(map_, chains_, query, statistics_.docks);
+  if (!closure) return false;
+  add_closure(*closure);
+  solve(kIterationsWhileMapping);
+  return true;
+}
+
+void Mapper::begin_session(const Pose2& T_map_sensor) {
+  if (!is_finite(T_map_sensor)) throw InputError("the start pose of a session must be finite");
+  T_map_start_ = T_map_sensor;
+  next_link_ = map_.graph.nodes.empty() ? NextLink::kNone : NextLink::kSession;
+  last_scan_.reset();
+}
+
+void Mapper::resume_from_paused() {
+  if (next_link_ == NextLink::kChain) next_link_ = NextLink::kPaused;
+}
+
+void Mapper::finish() {
+  if (pending_closures_ > 0 || !map_.graph.switchable_edges.empty()) solve(kFinalIterations);
+}
+
+void Mapper::set_map(Map map) {
+  map_ = std::move(map);
+  chains_ = Chains::of_map(map_);
+  loops_ = LoopClosureBuilder(parameters_);  // the submaps it remembers are of the old map
+  next_edge_id_ = map_.graph.edges.size() + map_.graph.switchable_edges.size();
+  for (const Edge& edge : map_.graph.edges) next_edge_id_ = std::max(next_edge_id_, edge.id + 1);
+  for (const SwitchableEdge& edge : map_.graph.switchable_edges) next_edge_id_ = std::max(next_edge_id_, edge.id + 1);
+  next_link_ = NextLink::kNone;
+  last_scan_.reset();
+  pending_closures_ = 0;
+  nodes_at_last_solve_ = map_.graph.nodes.size();
+}
+
+bool Mapper::is_due(const Pose2& T_odom_base) const {
+  if (next_link_ != NextLink::kChain) return true;
+  const Pose2 moved = between(T_odom_base_node_, T_odom_base);
+  return moved.translation().norm() >= parameters_.linear_update || std::abs(moved.theta) >= parameters_.angular_update;
+}
+
+void Mapper::track(LastScan& scan) {
+  Pose2 T_previous_sensor = between(T_odom_sensor_tracked_, scan.T_odom_sensor);
+  if (next_link_ != NextLink::kChain) {  // the first scan of a segment has nothing to be matched with
+    Pose2 T_local_start;
+    if (next_link_ == NextLink::kPaused) T_local_start = T_local_sensor_tracked_ * T_previous_sensor;
+    if (next_link_ == NextLink::kSession) T_local_start = T_map_start_;
+    incremental_.begin(T_local_start);
+    T_previous_sensor = Pose2{};
+  }
+  scan.tracked = incremental_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor);
+  scan.was_tracked = true;
+  T_odom_sensor_tracked_ = scan.T_odom_sensor;
+  T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
+  if (scan.tracked.usable) ++statistics_.scans_matched;
+}
+
+void Mapper::carry(LastScan& scan) const {
+  scan.tracked.T_local_sensor = T_local_sensor_tracked_ * between(T_odom_sensor_tracked_, scan.T_odom_sensor);
+}
+
+std::uint64_t Mapper::make_node(LastScan& scan) {
+  Node node;
+  node.id = map_.graph.nodes.size();
+  scan.cloud.id = node.id;
+  const bool begins_segment = next_link_ != NextLink::kChain;
+  if (next_link_ == NextLink::kChain) {
+    link_to_chain(scan, between(T_odom_sensor_node_, scan.T_odom_sensor), node, scan.tracked);
+  } else {
+    const FrsmMatcherParameters& p = parameters_.incremental_graph_builder.frsm_matcher;
+    const double scale = p.scanmatch_cov_scale;
+    map_.incremental_results.push_back({node.id, node.id, scan.tracked.T_local_sensor,
+                                        kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity(), Pose2{},
+                                        0.0});
+    if (next_link_ == NextLink::kPaused) {
+      const Node& last = map_.graph.nodes.back();
+      const Pose2 T_last_node = between(T_odom_sensor_node_, scan.T_odom_sensor);
+      node.pose = last.pose * T_last_node;
+      link_loosely(last.id, T_last_node, p.inflate_scanmatch_cov_scale, node, scan.cloud.time);
+    } else if (next_link_ == NextLink::kSession) {
+      node.pose = T_map_start_;
+      const std::uint64_t target = nearest_node(node.pose.translation());
+      link_loosely(target, between(map_.graph.nodes[target].pose, node.pose), p.resume_scanmatch_cov_scale, node,
+                   scan.cloud.time);
+    }
+  }
+  map_.graph.nodes.push_back(node);
+  chains_.add(begins_segment, scan.tracked.T_local_sensor);
+  map_.clouds.push_back(scan.cloud);
+  ++statistics_.nodes;
+  scan.is_node = true;
+  next_link_ = NextLink::kChain;
+  T_odom_sensor_node_ = scan.T_odom_sensor;
+  T_odom_base_node_ = scan.T_odom_base;
+  T_local_sensor_tracked_ = scan.tracked.T_local_sensor;  // linking may have corrected it
+  return node.id;
+}
+
+void Mapper::link_to_chain(const LastScan& scan, const Pose2& T_previous_node_odometry, Node& node,
+                           TrackedScan& tracked) {
+  const Node& previous = map_.graph.nodes.back();
+  const ChainLink link = incremental_.link(chains_.local_pose(previous.id), T_previous_node_odometry, tracked);
+  if (!link.refusal.empty()) {
+    ++statistics_.odometry_links;
+    ++statistics_.match_refusals[link.refusal];
+  }
+  node.pose = previous.pose * link.T_previous_node;
+  map_.graph.edges.push_back({next_edge_id_++, previous.id, node.id,
+                              {scan.cloud.time, node.id, link.T_previous_node, link.covariance, link.type}});
+  map_.incremental_results.push_back({node.id, previous.id, tracked.T_local_sensor, tracked.covariance,
+                                      link.T_previous_node, tracked.hit_fraction});
+}
+
+void Mapper::link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,
+                          double time) {
+  map_.graph.edges.push_back({next_edge_id_++, target, node.id,
+                              {time, node.id, T_target_node,
+                               kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity(),
+                               ConstraintType::kOdometry}});
+}
+
+void Mapper::close_loops(std::uint64_t node) {
+  double surprise = 0.0;
+  for (const Closure& closure : loops_.find(map_, chains_, node, statistics_.loops)) {
+    surprise = std::max(surprise, add_closure(closure));
+  }
+  solve_if_worthwhile(surprise);
+}
+
+double Mapper::add_closure(const Closure& closure) {
+  const Pose2 expected = between(map_.graph.nodes[closure.from].pose, map_.graph.nodes[closure.to].pose);
+  const Eigen::Vector3d error(expected.x - closure.T_from_to.x, expected.y - closure.T_from_to.y,
+                              wrap_angle(expected.theta - closure.T_from_to.theta));
+  map_.graph.switchable_edges.push_back({next_edge_id_++, closure.from, closure.to,
+                                         {map_.clouds[closure.from].time, closure.from, closure.T_from_to,
+                                          closure.covariance, ConstraintType::kLaser},
+                                         1.0});
+  map_.loop_results.push_back(
+      {closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
+  ++pending_closures_;
+  return error.dot(closure.covariance.ldlt().solve(error));
+}
+
+void Mapper::solve_if_worthwhile(double surprise) {
+  if (pending_closures_ == 0) return;
+  const std::uint64_t nodes = map_.graph.nodes.size();
+  const std::uint64_t interval = std::max(kMinSolveInterval, nodes / kSolveGrowth);
+  if (surprise > kSurprise || nodes >= nodes_at_last_solve_ + interval) solve(kIterationsWhileMapping);
+}
+
+void Mapper::solve(int max_iterations) {
+  OptimizerOptions options;
+  options.switchable_constraint_scale = parameters_.switchable_constraint_scale;
+  options.max_iterations = max_iterations;
+  optimize(map_.graph, options);
+  ++statistics_.solves;
+  pending_closures_ = 0;
+  nodes_at_last_solve_ = map_.graph.nodes.size();
+}
+
+ScanResult Mapper::result(const LastScan& scan, ScanOutcome outcome) const {
+  ScanResult result;
+  result.outcome = outcome;
+  result.hit_fraction = scan.tracked.hit_fraction;
+  result.status = scan.tracked.status;
+  if (next_link_ == NextLink::kChain) {  // else nothing links the scan to any node
+    result.node_id = map_.graph.nodes.back().id;
+    result.T_node_sensor = between(chains_.local_pose(*result.node_id), scan.tracked.T_local_sensor);
+  }
+  return result;
+}
+
+}  // namespace oort

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "oort/geometry/point_cloud.hpp"
+#include "oort/graph/optimizer.hpp"
+#include "oort/mapping/chains.hpp"
+#include "oort/mapping/dock_graph_builder.hpp"
+#include "oort/mapping/incremental_graph_builder.hpp"
+#include "oort/mapping/loop_closure_builder.hpp"
+#include "oort/mapping/map.hpp"
+#include "oort/mapping/statistics.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+enum class ScanOutcome {
+  kNode,     ///< the scan made a node
+  kCarried,  ///< it was located relative to the last node
+  kSkipped,  ///< it had too few returns: located by odometry alone, if there is a node to be relative to
+};
+
+struct ScanResult {
+  ScanOutcome outcome = ScanOutcome::kSkipped;
+  std::optional<std::uint64_t> node_id;  ///< the node that the pose is relative to; none before the first node
+  Pose2 T_node_sensor;
+  double hit_fraction = 0.0;
+  std::string status;  ///< what the scan matcher said; empty if it was not asked
+};
+
+/// Turns scans with odometry into a map: nodes and links, loop and dock closures, solved poses, named places.
+/// Deterministic; not thread-safe. Nodes are sensor poses, and the first of a new map is its origin.
+class Mapper {
+ public:
+  /// Throws ParameterError if the parameters contradict each other, InputError if the pose is not finite.
+  explicit Mapper(const Parameters& parameters, const Pose2& T_base_sensor = {});
+
+  /// Takes the next scan. Throws InputError if the scan's limits or the pose are not finite; nothing changes then.
+  ScanResult add_scan(const LaserScan& scan, const Pose2& T_odom_base);
+
+  /// Says that the robot stands at the dock now: makes a node of the last scan and links it to the dock's node.
+  /// Returns whether a closure was found. Throws StateError if there is no scan yet.
+  bool notify_docked();
+
+  /// The next scan begins a new chain at about this pose of the map.
+  void begin_session(const Pose2& T_map_sensor);
+
+  /// The next scan makes a node whose link to the last one is very uncertain.
+  void resume_from_paused();
+
+  /// Solves with all that is known; the map is at its final solution afterwards.
+  void finish();
+
+  const Map& map() const { return map_; }
+  /// Replaces everything by a map from elsewhere. Mapping goes on after begin_session().
+  void set_map(Map map);
+
+  /// Whether the sensor's pose in the map is known.
+  bool has_pose() const;
+  /// The latest scan's pose at the current solution. StateError if there is none.
+  Pose2 sensor_pose() const;
+  /// Where odometry's frame is in the map now. StateError if there is no pose yet.
+  Pose2 T_map_odom() const;
+
+  /// Names a pose of the map; it is kept relative to the nearest node. An old one of the same name is replaced.
+  /// StateError without a node, InputError if the pose is not finite.
+  void create_location(const std::string& name_space, const std::string& id, const Pose2& T_map_location);
+  /// Names points of the map, all relative to the node nearest to their centroid.
+  void create_points(const std::vector<std::string>& name_spaces, const std::vector<Eigen::Vector2d>& points,
+                     const std::vector<std::string>& ids);
+  /// Whether there was such a location.
+  bool delete_location(const std::string& name_space, const std::string& id);
+  std::optional<Pose2> locate(const std::string& name_space, const std::string& id) const;
+
+  const MapperStatistics& statistics() const { return statistics_; }
+
+ private:
+  /// The latest scan and where it is.
+  struct LastScan {
+    PointCloud cloud;
+    Pose2 T_odom_sensor;
+    Pose2 T_odom_base;
+    TrackedScan tracked;  // its pose is odometry's as long as was_tracked is false
+    bool was_tracked = false;
+    bool is_node = false;
+  };
+  /// How the next node hangs on what is there.
+  enum class NextLink { kNone, kChain, kPaused, kSession };
+
+  bool is_due(const Pose2& T_odom_base) const;
+  void track(LastScan& scan);
+  void carry(LastScan& scan) const;
+  std::uint64_t make_node(LastScan& scan);
+  void link_to_chain(const LastScan& scan, const Pose2& T_previous_node_odometry, Node& node, TrackedScan& tracked);
+  void link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,
+                    double time);
+  void close_loops(std::uint64_t node);
+  double add_closure(const Closure& closure);
+  void solve_if_worthwhile(double surprise);
+  void solve(int max_iterations);
+  std::uint64_t nearest_node(const Eigen::Vector2d& p_map) const;
+  ScanResult result(const LastScan& scan, ScanOutcome outcome) const;
+
+  Parameters parameters_;
+  Pose2 T_base_sensor_;
+  Map map_;
+  Chains chains_;
+  IncrementalGraphBuilder incremental_;
+  LoopClosureBuilder loops_;
+  DockGraphBuilder docks_;
+  MapperStatistics statistics_;
+
+  NextLink next_link_ = NextLink::kNone;
+  Pose2 T_map_start_;  // of a session to begin
+  std::optional<LastScan> last_scan_;
+  Pose2 T_odom_sensor_tracked_;   // when the matcher was last asked,
+  Pose2 T_local_sensor_tracked_;  // and what it said
+  Pose2 T_odom_sensor_node_;      // at the newest node
+  Pose2 T_odom_base_node_;
+  std::uint64_t next_edge_id_ = 0;
+  std::uint64_t pending_closures_ = 0;  // since the last solve
+  std::uint64_t nodes_at_last_solve_ = 0;
+};
+
+}  // namespace oort

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "oort/geometry/pose2.hpp"
+
+namespace oort {
+
+/// How far odometry may be off after a motion: variances grow in proportion to the way and to the turn, so that cutting
+/// a motion into steps does not change the sum (Thrun, Burgard, Fox 2005, section 5.4).
+struct OdometryModel {
+  double translation_per_meter = 0.0;   ///< standard deviation of x and y after one metre [m]
+  double translation_per_radian = 0.0;  ///< of x and y after turning one radian [m]
+  double rotation_per_meter = 0.0;      ///< of theta after one metre [rad]
+  double rotation_per_radian = 0.0;     ///< of theta after turning one radian [rad]
+  double translation_floor = 0.0;       ///< of x and y of any motion, however small [m]
+  double rotation_floor = 0.0;          ///< of theta of any motion [rad]
+
+  /// Covariance of a measured motion T_before_after, along the axes of the frame before.
+  Eigen::Matrix3d covariance(const Pose2& T_before_after) const;
+};
+
+}  // namespace oort

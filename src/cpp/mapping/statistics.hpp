@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace oort {
+
+/// What became of the attempts to close loops. Every attempt is counted once: accepted, or refused for one reason.
+struct ClosureCounts {
+  std::uint64_t tried = 0;
+  std::uint64_t accepted = 0;
+  std::map<std::string, std::uint64_t> refused;  ///< by reason
+};
+
+/// Counts since the mapper was made.
+struct MapperStatistics {
+  std::uint64_t scans = 0;
+  std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: carried by odometry
+  std::uint64_t scans_matched = 0;
+  std::uint64_t nodes = 0;
+  std::uint64_t odometry_links = 0;                     ///< nodes whose match was refused
+  std::map<std::string, std::uint64_t> match_refusals;  ///< of nodes, by reason
+  ClosureCounts loops;
+  ClosureCounts docks;
+  std::uint64_t solves = 0;
+};
+
+}  // namespace oort

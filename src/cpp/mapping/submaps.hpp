@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <frsm/contours.hpp>
+#include <frsm/table.hpp>
+#include <list>
+#include <memory>
+#include <vector>
+
+#include "oort/mapping/chains.hpp"
+#include "oort/mapping/map.hpp"
+
+namespace oort {
+
+/// Draws the scans of some nodes of one segment into a table, in the frame of `origin`, a node of that segment.
+std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const Chains& chains, std::uint64_t origin,
+                                               const std::vector<std::uint64_t>& nodes, const frsm::TableParams& table,
+                                               const frsm::ContourParams& contours);
+
+/// The returns of some nodes of one segment, in the frame of `origin`, a node of that segment.
+frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t origin,
+                           const std::vector<std::uint64_t>& nodes);
+
+/// Submaps of nodes, each drawn when it is first asked for and again after it fell out of the cache. A submap shows a
+/// node's neighbourhood in the frame of the node; since it is made from poses that never change, what is cached only
+/// decides how long a query takes, never its result.
+class SubmapCache {
+ public:
+  SubmapCache(std::uint64_t neighborhood_size, std::size_t capacity, const frsm::TableParams& table,
+              const frsm::ContourParams& contours);
+
+  std::shared_ptr<const frsm::Table> get(const Map& map, const Chains& chains, std::uint64_t node);
+
+ private:
+  struct Entry {
+    std::uint64_t node;
+    std::uint64_t end;  // of the neighbourhood: it grows while its node is among the newest
+    std::shared_ptr<const frsm::Table> table;
+  };
+  std::uint64_t neighborhood_size_;
+  std::size_t capacity_;
+  frsm::TableParams table_;
+  frsm::ContourParams contours_;
+  std::list<Entry> entries_;  // most recently used first
+};
+
+}  // namespace oort

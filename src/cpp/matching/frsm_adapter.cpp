@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/matching/frsm_adapter.hpp"
+
+#include <cmath>
+
+namespace oort {
+
+frsm::Points returns_of(const PointCloud& cloud) {
+  frsm::Points points;
+  points.reserve(cloud.points.size());
+  for (const Point2& point : cloud.points) {
+    if (point.is_return()) points.push_back({point.x, point.y});
+  }
+  return points;
+}
+
+void append_transformed(const frsm::Points& points_b, const Pose2& T_a_b, frsm::Points& points_a) {
+  const double c = std::cos(T_a_b.theta);
+  const double s = std::sin(T_a_b.theta);
+  points_a.reserve(points_a.size() + points_b.size());
+  for (const frsm::Point& p : points_b) {
+    points_a.push_back({T_a_b.x + c * p.x - s * p.y, T_a_b.y + s * p.x + c * p.y});
+  }
+}
+
+}  // namespace oort

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+// The keys at the top of params.json, and those of the dock.
+#include "oort/parameters/declare.hpp"
+
+namespace oort {
+
+void declare_general(const Section& v, Parameters& p) {
+  v(p.base_frame, "base_frame", {"base_footprint"},
+    "TF frame of the robot's base; the motion gate measures its motion.");
+  v(p.odom_frame, "odom_frame", {"odom"}, "TF frame that odometry reports in.");
+  v(p.sensor_frame, "sensor_frame", {"hokuyo_laser_link"}, "TF frame of the range sensor; a node's pose is its pose.");
+  v(p.map_frame, "map_frame", {"map"}, "TF frame of the map.");
+  v(p.linear_update, "linear_update", {0.2, "m", {0.001, 100}}, "A new node is made once the base moved this far.");
+  v(p.angular_update, "angular_update", {0.6, "rad", {0.001, 3.15}},
+    "A new node is made once the base turned this far.");
+  v(p.min_pointcloud_size, "min_pointcloud_size", {3, "points", {1, 100000}}, "Scans with fewer returns are skipped.");
+  v(p.switchable_constraint_scale, "switchable_constraint_scale", {2.0, "", {1e-6, 1e6}},
+    "Weight of the squared pull of a loop closure's switch towards on: the larger, the harder it is switched off.");
+}
+
+void declare_dock(const Section& v, DockGraphBuilderParameters& p) {
+  v(p.dock_submap_size, "dock_submap_size", {31, "nodes", {2, 10000}},
+    "Nodes from the dock's node onwards that make the reference submap.");
+  v(p.dock_match_submap_size, "dock_match_submap_size", {7, "nodes", {1, 10000}},
+    "Latest nodes that make the submap matched against it; fewer than dock_submap_size.");
+  v(p.dock_contacts_size, "dock_contacts_size", {0.15, "m", {0.0, 5.0}},
+    "Width of the dock's contacts: how far docked poses may lie apart.");
+  v(p.dock_max_translation, "dock_max_translation", {0.25, "m", {0.0, 5.0}},
+    "How far the dock may have been moved between two visits.");
+  v(p.dock_match_max_dist, "dock_match_max_dist", {0.4, "m", {0.0, 10.0}},
+    "Matches that put the two docked poses farther apart are refused.");
+  v(p.dock_match_min_hit_pct, "dock_match_min_hit_pct", {0.6, "fraction", {0.0, 1.0}},
+    "Matches with a smaller share of hits are refused.");
+  v(p.search_window_theta, "search_window_theta", {0.35, "rad", {0.01, 3.15}},
+    "Half width of the search in heading: how crooked the robot may stand on the dock.")
+      .own(0.35);
+}
+
+}  // namespace oort

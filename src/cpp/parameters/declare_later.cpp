@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+// The documented matchers that this version does not have: their keys are accepted, so that a documented file loads.
+#include "oort/parameters/declare.hpp"
+
+namespace oort {
+namespace {
+
+struct CeresDefaults {
+  double occupied_space, translation, rotation, covariance_scale;
+  int iterations;
+};
+
+void declare_ceres(const Section& v, CeresScanMatcherParameters& p, const CeresDefaults& d) {
+  v(p.occupied_space_cost_functor_weight, "occupied_space_cost_functor_weight", {d.occupied_space, "", {0.0, 1e6}},
+    "Weight of points lying on occupied cells.");
+  v(p.previous_pose_translation_delta_cost_functor_weight, "previous_pose_translation_delta_cost_functor_weight",
+    {d.translation, "", {0.0, 1e6}}, "Weight of keeping the position of the guess.");
+  v(p.initial_pose_estimate_rotation_delta_cost_functor_weight,
+    "initial_pose_estimate_rotation_delta_cost_functor_weight", {d.rotation, "", {0.0, 1e6}},
+    "Weight of keeping the heading of the guess.");
+  v(p.covariance_scale, "covariance_scale", {d.covariance_scale, "", {1e-9, 1e6}}, "Factor on the covariance.");
+  const Section solver = v.section("ceres_solver_options");
+  solver(p.ceres_solver_options.use_nonmonotonic_steps, "use_nonmonotonic_steps", true,
+         "Whether the solver may pass through worse steps.");
+  solver(p.ceres_solver_options.max_num_iterations, "max_num_iterations", {d.iterations, "", {1, 10000}},
+         "Most iterations of the solver.");
+  solver(p.ceres_solver_options.num_threads, "num_threads", {1, "", {1, 64}}, "Threads of the solver.");
+}
+
+void declare_grid_ceres(const Section& v, GridCeresScanMatcherParameters& p, double resolution,
+                        const CeresDefaults& d) {
+  v(p.resolution, "resolution", {resolution, "m", {0.005, 1.0}}, "Cell of the matcher's grid.");
+  declare_grid_probabilities(v, p, false);
+  declare_ceres(v, p, d);
+}
+
+void declare_acceptance(const Section& v, CartographerMatcherParameters& p) {
+  v(p.scanmatch_cov_scale, "scanmatch_cov_scale", {10.0, "", {0.001, 1e6}},
+    "Factor on the standard deviations of the match's covariance.");
+  v(p.inflate_scanmatch_cov_scale, "inflate_scanmatch_cov_scale", {40.0, "", {0.001, 1e6}},
+    "Takes the place of scanmatch_cov_scale for the first link after resume_from_paused.");
+  v(p.resume_scanmatch_cov_scale, "resume_scanmatch_cov_scale", {50.0, "", {0.001, 1e6}},
+    "Takes the place of scanmatch_cov_scale for the first link of a new session on an old map.");
+  v(p.sm_dist_accept_threshold, "sm_dist_accept_threshold", {0.05, "m", {0.0, 100.0}},
+    "Largest distance of match and odometry that is accepted.");
+  v(p.sm_dist_accept_x_min, "sm_dist_accept_x_min", {-0.12, "m", {-100.0, 100.0}},
+    "Least forward difference, odometry minus match, that is accepted.");
+  v(p.sm_dist_accept_x_max, "sm_dist_accept_x_max", {0.05, "m", {-100.0, 100.0}},
+    "Largest forward difference that is accepted.");
+  v(p.sm_dist_accept_threshold_y, "sm_dist_accept_threshold_y", {0.11, "m", {0.0, 100.0}},
+    "Largest sideways difference that is accepted.");
+  v(p.sm_angle_accept_threshold, "sm_angle_accept_threshold", {0.1, "rad", {0.0, 3.15}},
+    "Largest difference in heading that is accepted.");
+  v(p.min_sm_accept_score, "min_sm_accept_score", {0.0, "fraction", {0.0, 1.0}},
+    "Least share of hits that is accepted.");
+}
+
+void declare_second_stage(const Section& v, SecondStageMatcherParameters& p) {
+  declare_grid_ceres(v.section("ceres_scan_matcher"), p.ceres_scan_matcher, 0.01, {20.0, 20.0, 50.0, 6.0, 50});
+  v(p.sm_dist_accept_threshold, "sm_dist_accept_threshold", {0.051, "m", {0.0, 100.0}},
+    "Largest distance of match and odometry that is accepted.");
+  v(p.sm_angle_accept_threshold, "sm_angle_accept_threshold", {0.07, "rad", {0.0, 3.15}},
+    "Largest difference in heading that is accepted.");
+  v(p.min_sm_accept_score, "min_sm_accept_score", {0.0, "fraction", {0.0, 1.0}},
+    "Least share of hits that is accepted.");
+}
+
+void declare_lenient_match_filter(const Section& v, MatchFilterParameters& p) {
+  const Range fraction{0.0, 1.0};
+  const char* const as_frsm = "As in frsm_matcher.match_filter.";
+  v(p.close_node_hitpct_threshold, "close_node_hitpct_threshold", {0.0, "fraction", fraction}, as_frsm);
+  v(p.close_node_max_dist, "close_node_max_dist", {0.5, "m", {0.0, 1000.0}}, as_frsm);
+  v(p.match_max_ang_diff, "match_max_ang_diff", {2.09, "rad", {0.0, 3.15}}, as_frsm);
+  v(p.match_hitpct_threshold, "match_hitpct_threshold", {0.0, "fraction", fraction}, as_frsm);
+  v(p.match_hitpct_threshold_high, "match_hitpct_threshold_high", {0.0, "fraction", fraction}, as_frsm);
+  v(p.opposite_dir_threshold, "opposite_dir_threshold", {1.74, "rad", {0.0, 3.15}}, as_frsm);
+  v(p.match_hitpct_threshold_opposite_dir, "match_hitpct_threshold_opposite_dir", {0.0, "fraction", fraction}, as_frsm);
+  v(p.match_hitpct_threshold_high_opposite_dir, "match_hitpct_threshold_high_opposite_dir", {0.0, "fraction", fraction},
+    as_frsm);
+  v(p.match_max_dist, "match_max_dist", {0.5, "m", {0.0, 1000.0}}, as_frsm);
+  v(p.match_max_dist_high, "match_max_dist_high", {2.0, "m", {0.0, 1000.0}}, as_frsm);
+}
+
+}  // namespace
+
+void declare_cartographer_matcher(const Section& v, CartographerMatcherParameters& p) {
+  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown.");
+  v(p.debug_viewer_scale, "debug_viewer_scale", {4, "", {1, 100}}, "Screen pixels per cell of the viewer.");
+  v(p.history_length, "history_length", {30, "scans", {1, 10000}}, "Latest scans that make the matcher's local map.");
+  v(p.resolution, "resolution", {0.05, "m", {0.005, 1.0}}, "Cell of the matcher's grid.");
+  declare_grid_probabilities(v, p, true);
+  v(p.linear_search_window, "linear_search_window", {0.1, "m", {0.0, 100.0}}, "Half width of the search.");
+  v(p.angular_search_window, "angular_search_window", {0.1, "rad", {0.0, 3.15}},
+    "Half width of the search in heading.");
+  v(p.translation_delta_cost_weight, "translation_delta_cost_weight", {0.1, "", {0.0, 1e6}},
+    "Weight of keeping the position of the guess.");
+  v(p.rotation_delta_cost_weight, "rotation_delta_cost_weight", {0.1, "", {0.0, 1e6}},
+    "Weight of keeping the heading of the guess.");
+  v(p.use_ceres_refinement, "use_ceres_refinement", true, "Whether a Ceres matcher refines the match.");
+  declare_grid_ceres(v.section("ceres_scan_matcher"), p.ceres_scan_matcher, 0.025, {20.0, 1.0, 100.0, 0.5, 50});
+  declare_acceptance(v, p);
+  v(p.use_second_stage_matcher, "use_second_stage_matcher", false, "Whether a second, finer matcher follows.");
+  declare_second_stage(v.section("second_stage_matcher"), p.second_stage_matcher);
+}
+
+void declare_branch_and_bound_matcher(const Section& v, BranchAndBoundMatcherParameters& p) {
+  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown.");
+  v(p.debug_draw_original_cloud, "debug_draw_original_cloud", false,
+    "Whether the viewer draws the cloud unmatched too.");
+  v(p.debug_only_show_matched, "debug_only_show_matched", true, "Whether the viewer shows accepted matches only.");
+  v(p.submap_min_neighborhood_size, "submap_min_neighborhood_size", {3, "nodes", {1, 10000}},
+    "Candidates with a smaller submap are refused.");
+  v(p.global_localization_min_score, "global_localization_min_score", {0.21, "fraction", {0.0, 1.0}},
+    "Least score of a match without a guess.");
+  v(p.min_score, "min_score", {0.55, "fraction", {0.0, 1.0}}, "Least score of a match.");
+  const Section grid = v.section("probability_grid");
+  grid(p.probability_grid.resolution, "resolution", {0.05, "m", {0.005, 1.0}}, "Cell of the submap's grid.");
+  declare_grid_probabilities(grid, p.probability_grid, false);
+  const Section voxels = v.section("adaptive_voxel_filter");
+  voxels(p.adaptive_voxel_filter.max_length, "max_length", {0.9, "m", {0.0, 100.0}}, "Largest voxel.");
+  voxels(p.adaptive_voxel_filter.min_num_points, "min_num_points", {150, "points", {1, 1000000}},
+         "Points that must be left if voxels are enlarged.");
+  voxels(p.adaptive_voxel_filter.max_range, "max_range", {50.0, "m", {0.0, 1000.0}},
+         "Points farther away are dropped.");
+  const Section search = v.section("fast_correlative_scan_matcher");
+  search(p.fast_correlative_scan_matcher.linear_search_window, "linear_search_window", {7.0, "m", {0.0, 100.0}},
+         "Half width of the search.");
+  search(p.fast_correlative_scan_matcher.angular_search_window, "angular_search_window", {0.524, "rad", {0.0, 3.15}},
+         "Half width of the search in heading.");
+  search(p.fast_correlative_scan_matcher.branch_and_bound_depth, "branch_and_bound_depth", {7, "levels", {1, 16}},
+         "Levels of precomputed grids.");
+  declare_ceres(v.section("ceres_scan_matcher"), p.ceres_scan_matcher, {20.0, 10.0, 1.0, 0.125, 10});
+  declare_lenient_match_filter(v.section("match_filter"), p.match_filter);
+}
+
+}  // namespace oort

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+// loop_closure_graph_builder: where loops are looked for and which matches are believed.
+#include "oort/parameters/declare.hpp"
+
+namespace oort {
+namespace {
+
+void declare_candidate_search(const Section& v, CandidateSearchParameters& p) {
+  v(p.knearest_neighbors, "knearest_neighbors", {5, "nodes", {0, 1000}},
+    "Nearest nodes tried as candidates: more cost more and close more loops.");
+  v(p.submap_neighborhood_size, "submap_neighborhood_size", {15, "nodes", {1, 10000}},
+    "Nodes along the candidate's chain that make its submap; nodes within half as many hops are no further "
+    "candidates.");
+  v(p.closest_allowed_id_threshold_large, "closest_allowed_id_threshold_large", {30, "nodes", {1, 1000000}},
+    "Least difference of a candidate's id to the query's.");
+  v(p.closest_allowed_id_threshold_small, "closest_allowed_id_threshold_small", {5, "nodes", {1, 1000000}},
+    "The same, for a second search if the first finds no candidate.");
+  v(p.max_dist_allowed_threshold, "max_dist_allowed_threshold", {4.0, "m", {0.0, 1000.0}}, "No effect.").unused();
+  v(p.max_candidate_distance, "max_candidate_distance", {4.0, "m", {0.0, 1000.0}},
+    "Nodes farther away are no candidates; 0: no limit.")
+      .own(0.0, "Scans of nodes far apart overlap little: they cost time and close no loop.");
+}
+
+void declare_match_filter(const Section& v, MatchFilterParameters& p) {
+  v(p.close_node_hitpct_threshold, "close_node_hitpct_threshold", {0.8, "fraction", {0.0, 1.0}},
+    "Least share of hits of a close match: its ids differ by less than closest_allowed_id_threshold_large.");
+  v(p.close_node_max_dist, "close_node_max_dist", {0.5, "m", {0.0, 1000.0}},
+    "A close match must move the candidate, from where the graph expects it, by less than this.");
+  v(p.match_max_ang_diff, "match_max_ang_diff", {2.09, "rad", {0.0, 3.15}},
+    "A close match must turn the candidate by less than this.");
+  v(p.match_hitpct_threshold, "match_hitpct_threshold", {0.7, "fraction", {0.0, 1.0}},
+    "A match that moves the candidate by less than match_max_dist needs a share of hits above this.");
+  v(p.match_max_dist, "match_max_dist", {0.5, "m", {0.0, 1000.0}}, "Goes with match_hitpct_threshold.");
+  v(p.match_hitpct_threshold_high, "match_hitpct_threshold_high", {0.8, "fraction", {0.0, 1.0}},
+    "A match that moves the candidate by less than match_max_dist_high needs a share of hits above this.");
+  v(p.match_max_dist_high, "match_max_dist_high", {2.0, "m", {0.0, 1000.0}}, "Goes with match_hitpct_threshold_high.");
+  v(p.opposite_dir_threshold, "opposite_dir_threshold", {1.74, "rad", {0.0, 3.15}},
+    "From this difference in heading on, before the match, two nodes look in opposite ways.");
+  v(p.match_hitpct_threshold_opposite_dir, "match_hitpct_threshold_opposite_dir", {0.67, "fraction", {0.0, 1.0}},
+    "Takes the place of match_hitpct_threshold for them.");
+  v(p.match_hitpct_threshold_high_opposite_dir, "match_hitpct_threshold_high_opposite_dir",
+    {0.75, "fraction", {0.0, 1.0}}, "Takes the place of match_hitpct_threshold_high for them.");
+}
+
+}  // namespace
+
+void declare_loop_closure(const Section& v, LoopClosureGraphBuilderParameters& p) {
+  declare_candidate_search(v.section("candidate_search"), p.candidate_search);
+  v(p.scanmatcher, "scanmatcher", {"frsm_matcher", {"frsm_matcher"}, {"branch_and_bound_matcher"}},
+    "The matcher that closes loops.");
+  const Section frsm = v.section("frsm_matcher");
+  frsm(p.frsm_matcher.submap_min_neighborhood_size, "submap_min_neighborhood_size", {3, "nodes", {1, 10000}},
+       "Candidates with a smaller submap are refused.");
+  frsm(p.frsm_matcher.rough_match_hitpct_threshold, "rough_match_hitpct_threshold", {0.3, "fraction", {0.0, 1.0}},
+       "Least share of hits of the rough match.");
+  frsm(p.frsm_matcher.fine_match_hitpct_threshold, "fine_match_hitpct_threshold", {0.6, "fraction", {0.0, 1.0}},
+       "Least share of hits of the fine match.");
+  frsm(p.frsm_matcher.query_neighborhood_size, "query_neighborhood_size", {1, "nodes", {1, 100}},
+       "Nodes around the query whose scans are matched together.")
+      .own(1);
+  frsm(p.frsm_matcher.search_window_xy, "search_window_xy", {1.0, "m", {0.01, 20.0}},
+       "Half width of the search around where the graph expects the query.")
+      .own(2.0, "What a chain drifts between two visits is less.");
+  frsm(p.frsm_matcher.search_window_theta, "search_window_theta", {0.35, "rad", {0.01, 3.15}},
+       "Half width of the search in heading.")
+      .own(0.52, "What a chain drifts between two visits is less.");
+  frsm(p.frsm_matcher.max_ambiguity, "max_ambiguity", {1.0, "fraction", {0.0, 1.0}},
+       "A match is refused if another place in the window has more than this share of its score; 1: never.")
+      .own(1.0);
+  declare_match_filter(frsm.section("match_filter"), p.frsm_matcher.match_filter);
+  declare_branch_and_bound_matcher(v.section("branch_and_bound_matcher", ParameterStatus::kLater),
+                                   p.branch_and_bound_matcher);
+}
+
+}  // namespace oort

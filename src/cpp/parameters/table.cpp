@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/parameters/table.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "oort/geometry/errors.hpp"
+#include "oort/parameters/declare.hpp"
+
+namespace oort {
+namespace {
+
+std::vector<DeclaredParameter> declare(Parameters& p) {
+  std::vector<DeclaredParameter> rows;
+  const Section root(rows);
+  declare_general(root, p);
+  declare_output_map(root.section("output_map"), p.output_map);
+  declare_incremental(root.section("incremental_graph_builder"), p.incremental_graph_builder);
+  declare_loop_closure(root.section("loop_closure_graph_builder"), p.loop_closure_graph_builder);
+  declare_dock(root.section("dock_graph_builder"), p.dock_graph_builder);
+  return rows;
+}
+
+DeclaredParameter find(Parameters& parameters, const std::string& path) {
+  std::vector<DeclaredParameter> rows = declare(parameters);
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.entry.path == path; });
+  if (row == rows.end()) throw ParameterError("unknown parameter \"" + path + "\"; docs/parameters.md lists all");
+  return std::move(*row);
+}
+
+void require(bool holds, const std::string& section, const std::string& rule) {
+  if (!holds) throw ParameterError(section + ": " + rule);
+}
+
+}  // namespace
+
+Parameters::Parameters() {
+  for (DeclaredParameter& row : declare(*this)) row.set(row.entry.default_value);
+}
+
+Parameters default_parameters() {
+  return {};
+}
+
+std::vector<ParameterEntry> parameter_table() {
+  Parameters parameters;
+  std::vector<ParameterEntry> table;
+  for (DeclaredParameter& row : declare(parameters)) table.push_back(std::move(row.entry));
+  return table;
+}
+
+ParameterValue get_parameter(const Parameters& parameters, const std::string& path) {
+  Parameters copy = parameters;  // the rows bind to fields that can be written
+  return find(copy, path).get();
+}
+
+std::vector<std::pair<std::string, ParameterValue>> parameter_values(const Parameters& parameters) {
+  Parameters copy = parameters;
+  std::vector<std::pair<std::string, ParameterValue>> values;
+  for (const DeclaredParameter& row : declare(copy)) values.emplace_back(row.entry.path, row.get());
+  return values;
+}
+
+void set_parameter(Parameters& parameters, const std::string& path, const ParameterValue& value) {
+  find(parameters, path).set(value);
+}
+
+void check_parameters(const Parameters& parameters) {
+  const OutputMapParameters& map = parameters.output_map;
+  require(map.threshold.max_free < map.threshold.min_occupied, "output_map.threshold",
+          "max_free must be less than min_occupied");
+  require(map.median.kernel_size % 2 == 1, "output_map.median", "kernel_size must be odd");
+  const MatchFilteringParameters& filtering = parameters.incremental_graph_builder.frsm_matcher.match_filtering;
+  require(filtering.x_min_accept < filtering.x_max_accept, "incremental_graph_builder.frsm_matcher.match_filtering",
+          "x_min_accept must be less than x_max_accept");
+  const CandidateSearchParameters& search = parameters.loop_closure_graph_builder.candidate_search;
+  require(search.closest_allowed_id_threshold_small <= search.closest_allowed_id_threshold_large,
+          "loop_closure_graph_builder.candidate_search",
+          "closest_allowed_id_threshold_small must not be more than closest_allowed_id_threshold_large");
+  const DockGraphBuilderParameters& dock = parameters.dock_graph_builder;
+  require(dock.dock_match_submap_size < dock.dock_submap_size, "dock_graph_builder",
+          "dock_match_submap_size must be less than dock_submap_size");
+}
+
+std::string type_name(const ParameterValue& value) {
+  static constexpr const char* kNames[] = {"bool", "integer", "number", "string"};
+  return kNames[value.index()];
+}
+
+}  // namespace oort

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "oort/geometry/point_cloud.hpp"
+#include "oort/graph/graph.hpp"
+#include "oort/parameters/parameters.hpp"
+#include "oort/render/occupancy_grid.hpp"
+
+namespace oort {
+
+struct RenderedMap {
+  OccupancyGrid map;          ///< as the clouds say, with the robot's way cleared
+  OccupancyGrid map_cleaned;  ///< the same without speckle noise, for path planning; the robot's way is free here too
+};
+
+/// Draws the map that the clouds show from their nodes' poses.
+///
+/// Each cloud goes once into a probability grid, in the order of the nodes; the thresholds turn it into free, occupied
+/// and unknown cells; a disc of robot_radius around each node is set free. The grid's upper right corner is that of the
+/// box around all hits, which is widened where a node or a cleared stretch lies outside it.
+///
+/// `clouds[k]` was taken at `nodes[k]`, in the sensor's frame. No nodes give empty grids (width and height 0).
+/// Throws ParameterError for parameters that make no sense, InputError (naming the node) if the counts differ, a pose
+/// is not finite or a node or its cloud lies too far off for a grid.
+RenderedMap render(const std::vector<Node>& nodes, const std::vector<PointCloud>& clouds,
+                   const OutputMapParameters& parameters);
+
+}  // namespace oort

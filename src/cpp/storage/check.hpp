@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+#include "oort/mapping/map.hpp"
+
+namespace oort {
+
+/// The first thing that makes a map unusable, in words that follow "because": ids that are not consecutive from 0,
+/// edges, results or locations of nodes that do not exist, a cloud missing or at the wrong node, numbers that are not
+/// finite where they must be, a switch outside [0, 1]. Nothing for a sound map.
+std::optional<std::string> find_defect(const Map& map);
+
+}  // namespace oort

@@ -1,0 +1,26 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command ``oort``: one word for each tool."""
+
+import importlib
+import sys
+from collections.abc import Sequence
+
+_TOOLS = {
+    "replay": "map a recorded drive",
+    "simulate": "make up a home and a drive through it",
+    "evaluate": "compare a trajectory with what is known to be true",
+    "parameters": "print the table of parameters",
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs one tool; exit code 2 for a wrong call."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or arguments[0] not in _TOOLS:
+        stream = sys.stdout if arguments[:1] in (["-h"], ["--help"]) else sys.stderr
+        print("usage: oort TOOL ...", *(f"  {name:<11}{what}" for name, what in _TOOLS.items()), sep="\n", file=stream)
+        return 0 if stream is sys.stdout else 2
+    module = importlib.import_module(f"oort.{arguments[0]}")
+    result: int = module.main(arguments[1:])
+    return result

@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Named places of a map: namespaces, prefixes and checks. The poses themselves live in the mapper and move with it."""
+
+import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from oort._core import Mapper
+from oort.errors import StateError
+
+Pose = tuple[float, float, float]
+"""x [m], y [m], theta [rad]."""
+
+
+@dataclass(frozen=True)
+class _Request:
+    """A place that was asked for before the map had a pose to give it."""
+
+    name_space: str
+    id: str
+
+
+class Locations:
+    """Create, read and delete named places of one mapper's map.
+
+    A place is known by its namespace and id; creating it again moves it. The namespace ``dock`` is for docks.
+    """
+
+    def __init__(self, mapper: Mapper) -> None:
+        """Serves the places of ``mapper``."""
+        self._mapper = mapper
+        self._waiting: list[_Request] = []
+
+    def create_here(self, name_space: str, id: str) -> str:
+        """Records the sensor's current pose; before the first node exists, as soon as it does.
+
+        Returns the id, which is made up when it was empty.
+        """
+        request = _Request(name_space, id or str(uuid.uuid5(uuid.NAMESPACE_OID, f"{name_space}/{self._count()}")))
+        if self._mapper.has_pose:
+            self._mapper.create_location(request.name_space, request.id, self._mapper.sensor_pose)
+        else:
+            self._waiting.append(request)
+        return request.id
+
+    def create_at(self, name_space: str, id: str, pose: Pose) -> None:
+        """Records a given pose of the sensor in the map frame."""
+        self._mapper.create_location(name_space, id, pose)
+
+    def create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
+        """Records points (x, y) of the map frame, all relative to the node that is nearest to their centroid."""
+        if not len(name_spaces) == len(points) == len(ids):
+            raise StateError(
+                f"create_points: got {len(name_spaces)} namespaces, {len(points)} points and {len(ids)} ids; "
+                "give one namespace and one id per point"
+            )
+        if points:
+            self._mapper.create_points(list(name_spaces), [(float(p[0]), float(p[1])) for p in points], list(ids))
+
+    def settle(self) -> None:
+        """Gives the waiting places the current pose, if there is one by now."""
+        if self._waiting and self._mapper.has_pose:
+            for request in self._waiting:
+                self._mapper.create_location(request.name_space, request.id, self._mapper.sensor_pose)
+            self._waiting.clear()
+
+    def list(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
+        """All (namespace, id) of a namespace, or of all that begin with it."""
+        return [
+            (space, id)
+            for space, id, *_ in self._mapper.locations
+            if space == name_space or (use_as_prefix and space.startswith(name_space))
+        ]
+
+    def list_namespaces(self) -> list[str]:
+        """Every namespace that holds a place, in the order in which they were made."""
+        return list(dict.fromkeys(space for space, *_ in self._mapper.locations))
+
+    def locate(self, name_space: str, id: str) -> Pose:
+        """Where a place is now, in the map frame. Raises StateError if it is not known (yet)."""
+        if _Request(name_space, id) in self._waiting:
+            raise StateError(f"location {name_space!r}/{id!r} has no pose yet: mapping has not reached it; ask again later")
+        pose = self._mapper.locate(name_space, id)
+        if pose is None:
+            raise StateError(f"no location {name_space!r}/{id!r}; graph_loc/list shows the known ones")
+        return pose
+
+    def delete(self, name_space: str, id: str) -> bool:
+        """Removes a place; whether it was there."""
+        waiting = [r for r in self._waiting if r != _Request(name_space, id)]
+        was_waiting = len(waiting) < len(self._waiting)
+        self._waiting = waiting
+        return self._mapper.delete_location(name_space, id) or was_waiting
+
+    def clear(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
+        """Removes the places that list() would give, and returns them."""
+        doomed = self.list(name_space, use_as_prefix)
+        for space, id in doomed:
+            self._mapper.delete_location(space, id)
+        return doomed
+
+    def _count(self) -> int:
+        return len(self._mapper.locations) + len(self._waiting)

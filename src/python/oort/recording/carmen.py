@@ -1,0 +1,229 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reads CARMEN logs: text, one message a line, each ending in `ipc_timestamp hostname logger_timestamp`."""
+
+import bz2
+import gzip
+import math
+import zlib
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import BinaryIO, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from oort.errors import InputError
+from oort.poses import between
+from oort.recording.types import Pose, Recording, Scan
+
+_FLASER_MAX_RANGE = 80.0  # [m]; these lasers report 81.83 and 81.91 for no return
+_MOUNT_TOLERANCE = (0.02, 0.02)  # [m], [rad]: logs are written with as few as two decimals
+_CUT = "The log is cut short here: copy it again, or remove this last line."
+
+
+class _MalformedError(ValueError):
+    """A line that does not hold what its message must."""
+
+
+class _Reading(NamedTuple):
+    scan: Scan
+    laser: Pose  # T_odom_sensor
+
+
+def read_carmen(path: Path, *, name: str, message: str | None, max_range: float | None) -> Recording:
+    """Reads a whole CARMEN log. `message` is FLASER or ROBOTLASER1, None for the one there is.
+
+    The sensor's place on the base is the difference of the laser's and the robot's pose in the first scan; InputError
+    if it changes over the log. The time of a scan is the ipc timestamp.
+    """
+    if message is not None and message not in _PARSERS:
+        raise InputError(f"{path}: {message!r} is not a laser message of a CARMEN log; choose FLASER or ROBOTLASER1")
+    readings, others, notes = _read_messages(path, message, math.inf if max_range is None else max_range)
+    filled = [reading for reading in readings if reading.scan.ranges.size]
+    if not filled:
+        found = ", ".join(f"{count} {keyword[:20]}" for keyword, count in others.most_common(6)) or "no message at all"
+        raise InputError(
+            f"{path}: no laser scans. Expected are lines that begin with {message or 'FLASER or ROBOTLASER1'}; found "
+            f"{found}. Is it a CARMEN log?"
+        )
+    if len(filled) < len(readings):
+        notes.append(f"scans skipped, without readings: {len(readings) - len(filled)}")
+    scans = [reading.scan for reading in filled]
+    return Recording(
+        name=name,
+        kind="CARMEN log",
+        sensor_on_base=_mount(path, filled),
+        num_scans=len(scans),
+        notes=tuple(notes + _notes(scans, others)),
+        source=lambda: iter(scans),
+    )
+
+
+def _read_messages(path: Path, message: str | None, max_range: float) -> tuple[list[_Reading], Counter[str], list[str]]:
+    """All laser messages in the order of the lines, how many other messages there are, and notes."""
+    readings: list[_Reading] = []
+    others: Counter[str] = Counter()
+    notes: list[str] = []
+    for number, line in _lines(path):
+        fields = line.split()
+        if not fields or fields[0].startswith("#"):
+            continue
+        keyword = fields[0]
+        cut = not line.endswith("\n")  # can only be so in the last line
+        if keyword not in _PARSERS:
+            if cut and any(known.startswith(keyword) for known in _PARSERS):
+                raise InputError(f"{path}: line {number}: {keyword} and nothing more. {_CUT}")
+            if cut:
+                notes.append(f"the last line ({keyword}) has no end: the log may have been cut short there")
+        elif message is None or keyword == message:
+            message = keyword
+            try:
+                readings.append(_PARSERS[keyword](fields, max_range))
+            except _MalformedError as error:
+                raise InputError(
+                    f"{path}: line {number}: {keyword} {error}. {_CUT if cut else 'Correct or remove the line.'}"
+                ) from None
+            continue
+        others[keyword] += 1
+    return readings, others, notes
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Numbers from 1 and lines, each with its end."""
+    number = 0
+    try:
+        with _open(path) as stream:
+            for number, line in enumerate(stream, 1):
+                yield number, line.decode("ascii", errors="replace")
+    except EOFError:
+        raise InputError(f"{path} is cut short: its compressed data end after line {number}; copy it again") from None
+    except (OSError, zlib.error) as error:
+        raise InputError(f"{path} cannot be read beyond line {number} ({error}); copy it again") from None
+
+
+def _open(path: Path) -> BinaryIO | gzip.GzipFile | bz2.BZ2File:
+    with path.open("rb") as stream:
+        magic = stream.read(3)
+    if magic.startswith(b"\x1f\x8b"):
+        return gzip.open(path)
+    return bz2.open(path) if magic == b"BZh" else path.open("rb")
+
+
+def _parse_flaser(fields: list[str], max_range: float) -> _Reading:
+    """FLASER n r1..rn laser_x y theta robot_x y theta ipc_timestamp hostname logger_timestamp."""
+    n = _count(fields, 1)
+    _expect(fields, n + 11, f"of {n} readings")
+    poses = _numbers(fields[n + 2 : n + 8])
+    start, increment = flaser_angles(n)
+    scan = Scan(
+        time=_numbers(fields[n + 8 : n + 9])[0],
+        stamp=fields[n + 8],
+        angle_min=start,
+        angle_increment=increment,
+        range_min=0.0,
+        range_max=min(_FLASER_MAX_RANGE, max_range),
+        ranges=_ranges(fields[2 : n + 2]),
+        odometry=(poses[3], poses[4], poses[5]),
+    )
+    return _Reading(scan, (poses[0], poses[1], poses[2]))
+
+
+def flaser_angles(n: int) -> tuple[float, float]:
+    """The bearing of the first reading and the step [rad] of a FLASER message, which carries no field of view.
+
+    It is taken as the usual tools take it: from -90 degrees, by 1 degree for 180 and 181 readings, by half a degree
+    for 360 and 361, else by 180 degrees / n.
+    """
+    steps = {180: 1.0, 181: 1.0, 360: 0.5, 361: 0.5}
+    return -math.pi / 2, math.radians(steps[n] if n in steps else 180.0 / max(n, 1))
+
+
+def _parse_robotlaser(fields: list[str], max_range: float) -> _Reading:
+    """ROBOTLASER1 laser_type start_angle field_of_view angular_resolution maximum_range accuracy remission_mode.
+
+    Goes on with: n r1..rn m remission1..m laser_x y theta robot_x y theta tv rv forward_safety_dist side_safety_dist
+    turn_axis ipc_timestamp hostname logger_timestamp.
+    """
+    n = _count(fields, 8)
+    m = _count(fields, n + 9)
+    _expect(fields, n + m + 24, f"of {n} readings and {m} remissions")
+    _, start, _, increment, own_max_range = _numbers(fields[1:6])
+    if own_max_range <= 0.0:
+        raise _MalformedError(f"says that its maximum range is {own_max_range}")
+    tail = n + m + 10
+    poses = _numbers(fields[tail : tail + 6])
+    scan = Scan(
+        time=_numbers(fields[-3:-2])[0],
+        stamp=fields[-3],
+        angle_min=start,
+        angle_increment=increment,
+        range_min=0.0,
+        range_max=min(own_max_range, max_range),
+        ranges=_ranges(fields[9 : n + 9]),
+        odometry=(poses[3], poses[4], poses[5]),
+    )
+    return _Reading(scan, (poses[0], poses[1], poses[2]))
+
+
+_PARSERS: dict[str, Callable[[list[str], float], _Reading]] = {
+    "FLASER": _parse_flaser,
+    "ROBOTLASER1": _parse_robotlaser,
+}
+
+
+def _count(fields: list[str], index: int) -> int:
+    if index >= len(fields):
+        raise _MalformedError(f"has only {len(fields)} fields")
+    if not fields[index].isdecimal():
+        raise _MalformedError(f"has {fields[index]!r} where a number of readings belongs")
+    return int(fields[index])
+
+
+def _expect(fields: list[str], number: int, what: str) -> None:
+    if len(fields) != number:
+        raise _MalformedError(f"{what} must have {number} fields, but has {len(fields)}")
+
+
+def _numbers(fields: list[str]) -> list[float]:
+    try:
+        values = [float(field) for field in fields]
+    except ValueError as error:
+        raise _MalformedError(f"has a field that is no number ({error})") from None
+    if not all(map(math.isfinite, values)):
+        raise _MalformedError(f"has a time, pose or angle that is not finite: {' '.join(fields)}")
+    return values
+
+
+def _ranges(fields: list[str]) -> NDArray[np.float32]:
+    try:
+        return np.array([float(field) for field in fields], dtype=np.float32)
+    except ValueError as error:
+        raise _MalformedError(f"has a reading that is no number ({error})") from None
+
+
+def _mount(path: Path, readings: list[_Reading]) -> Pose:
+    """T_base_sensor of the first scan, which must hold for all."""
+    mounts = between([reading.scan.odometry for reading in readings], [reading.laser for reading in readings])
+    changes = between(mounts[0], mounts)
+    shift, turn = float(np.hypot(changes[:, 0], changes[:, 1]).max()), float(np.abs(changes[:, 2]).max())
+    if shift > _MOUNT_TOLERANCE[0] or turn > _MOUNT_TOLERANCE[1]:
+        raise InputError(
+            f"{path}: the laser does not stay in its place on the robot: its pose against the robot's changes by "
+            f"{shift:.2f} m and {math.degrees(turn):.1f} degrees. Its poses may be another program's corrected ones: "
+            "use the raw log"
+        )
+    x, y, theta = mounts[0].tolist()
+    return x, y, theta
+
+
+def _notes(scans: list[Scan], others: Counter[str]) -> list[str]:
+    notes = []
+    if others:
+        listed = ", ".join(f"{count} {keyword[:20]}" for keyword, count in others.most_common(6))
+        notes.append(f"ignored lines: {listed}")
+    backwards = int(np.count_nonzero(np.diff([scan.time for scan in scans]) < 0.0))
+    if backwards:
+        notes.append(f"the stamps go backwards {backwards} times; the order of the lines is kept")
+    return notes

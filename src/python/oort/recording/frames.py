@@ -1,0 +1,147 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The transforms of a bag: collects tf, finds the way from one frame to another, and brings it to the plane."""
+
+import math
+from array import array
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from oort.errors import InputError
+from oort.poses import between
+from oort.recording.types import Pose
+
+_TILT = math.radians(5.0)  # a planar laser's range errs by 0.4 % at this tilt
+_FIXED = (0.02, 0.02)  # [m], [rad]: how far a transform that should be fixed may vary
+
+
+@dataclass(slots=True)
+class Link:
+    """All transforms of one parent and child: T_parent_child."""
+
+    first: NDArray[np.float64]
+    """(4, 4), the first one"""
+    samples: "array[float]" = field(default_factory=lambda: array("d"))
+    """time [s], x, y [m], theta [rad] of each, one after another"""
+
+    def by_time(self) -> NDArray[np.float64]:
+        """(n, 4) samples in the order of time; of equal times, in the order of the recording."""
+        samples = np.frombuffer(self.samples, dtype=np.float64).reshape(-1, 4)
+        return samples[np.argsort(samples[:, 0], kind="stable")]
+
+
+class FrameTree:
+    """The transforms seen so far, by parent and child frame."""
+
+    def __init__(self) -> None:
+        """An empty tree."""
+        self.links: dict[str, dict[str, Link]] = {}
+        """links[child][parent], in the order of appearance"""
+        self.unusable = 0
+        """how many transforms were left out because they are not finite or have no rotation"""
+
+    def add(
+        self, parent: str, child: str, time: float, translation: Sequence[float], quaternion: Sequence[float]
+    ) -> None:
+        """Adds T_parent_child: translation x, y, z [m] and quaternion x, y, z, w of any length but zero."""
+        norm = math.hypot(*quaternion)
+        if not all(map(math.isfinite, (time, norm, *translation))) or norm < 1e-3:
+            self.unusable += 1
+            return
+        x, y, z, w = (value / norm for value in quaternion)
+        parents = self.links.setdefault(child, {})
+        if parent not in parents:
+            parents[parent] = Link(_matrix(translation, x, y, z, w))
+        yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        parents[parent].samples.extend((time, translation[0], translation[1], yaw))
+
+    def above(self, frame: str) -> list[str]:
+        """The frame and all frames above it, nearest first."""
+        found = [frame]
+        for current in found:
+            found.extend(parent for parent in self.links.get(current, {}) if parent not in found)
+        return found
+
+    def way_up(self, frame: str, ancestor: str) -> list[str]:
+        """The frames from `frame` up to `ancestor`, both included, by the shortest way; empty if there is none."""
+        came_from = {frame: ""}
+        queue = [frame]
+        for current in queue:
+            for parent in self.links.get(current, {}):
+                if parent not in came_from:
+                    came_from[parent] = current
+                    queue.append(parent)
+        if ancestor not in came_from:
+            return []
+        way = [ancestor]
+        while came_from[way[-1]]:
+            way.append(came_from[way[-1]])
+        return way[::-1]
+
+    def mount(self, base: str, sensor: str) -> NDArray[np.float64]:
+        """T_base_sensor (4, 4). Raises InputError if there is no transform or it varies."""
+        if base == sensor:
+            return np.eye(4)
+        above_sensor = self.above(sensor)
+        common = next((frame for frame in self.above(base) if frame in above_sensor), None)
+        if common is None:
+            raise InputError(
+                f"no transform leads from the base's frame {base!r} to the laser's {sensor!r}; the bag has "
+                f"{self.describe()}. Record /tf and /tf_static"
+            )
+        T_base_common = np.linalg.inv(self._fixed(self.way_up(base, common)))
+        return np.asarray(T_base_common @ self._fixed(self.way_up(sensor, common)), dtype=np.float64)
+
+    def _fixed(self, way: list[str]) -> NDArray[np.float64]:
+        """T_last_first of a way up whose transforms must not vary."""
+        total = np.eye(4)
+        for child, parent in pairwise(way):
+            link = self.links[child][parent]
+            poses = link.by_time()[:, 1:]
+            changes = np.abs(between(poses[0], poses)).max(axis=0)
+            if max(changes[0], changes[1]) > _FIXED[0] or changes[2] > _FIXED[1]:
+                raise InputError(
+                    f"the transform {parent} -> {child} between the robot's base and its laser varies by "
+                    f"{max(changes[0], changes[1]):.2f} m and {math.degrees(changes[2]):.1f} degrees; the laser must "
+                    "be fixed on the base"
+                )
+            total = link.first @ total
+        return total
+
+    def describe(self) -> str:
+        """All links, for messages."""
+        pairs = [f"{parent} -> {child}" for child, parents in self.links.items() for parent in parents]
+        return ", ".join(sorted(pairs)[:20]) or "no transforms"
+
+
+def to_plane(T_base_sensor: NDArray[np.float64], sensor: str) -> tuple[Pose, bool]:  # noqa: N803
+    """The sensor's planar pose on the base, and whether it hangs upside down.
+
+    Upside down (a roll of 180 degrees), a bearing counts clockwise on the base: the caller turns the beams round.
+    Raises InputError if the sensor is tilted by more than 5 degrees.
+    """
+    upward = float(T_base_sensor[2, 2])  # cosine of the angle between the two z axes
+    if abs(upward) < math.cos(_TILT):
+        raise InputError(
+            f"the laser's frame {sensor} is tilted by {math.degrees(math.acos(abs(upward))):.0f} degrees against the "
+            "base; only a level laser, upright or upside down, can be used"
+        )
+    yaw = math.atan2(T_base_sensor[1, 0], T_base_sensor[0, 0])
+    return (float(T_base_sensor[0, 3]), float(T_base_sensor[1, 3]), yaw), upward < 0.0
+
+
+def _matrix(translation: Sequence[float], x: float, y: float, z: float, w: float) -> NDArray[np.float64]:
+    """The homogeneous matrix of a translation and a unit quaternion."""
+    tx, ty, tz = translation
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), tx],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), ty],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), tz],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )

@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The figures of a replay: the table that people read and report.json."""
+
+import resource
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from oort.recording import Recording
+
+
+@dataclass
+class Stopwatch:
+    """Measures what a replay costs."""
+
+    wall_start: float = field(default_factory=time.perf_counter)
+    cpu_start: float = field(default_factory=time.process_time)
+    scan_seconds: list[float] = field(default_factory=list)
+
+    def figures(self, recorded_seconds: float) -> dict[str, Any]:
+        """Cost so far: of each scan, of the whole, and against the length of the recording."""
+        wall = time.perf_counter() - self.wall_start
+        milliseconds = 1e3 * np.array(self.scan_seconds or [0.0])
+        p50, p95, p99 = np.percentile(milliseconds, [50, 95, 99])
+        return {
+            "ms_per_scan": {
+                "mean": round(float(milliseconds.mean()), 4),
+                "p50": round(float(p50), 4),
+                "p95": round(float(p95), 4),
+                "p99": round(float(p99), 4),
+                "max": round(float(milliseconds.max()), 4),
+            },
+            "wall_seconds": round(wall, 3),
+            "cpu_seconds": round(time.process_time() - self.cpu_start, 3),
+            "times_real_time": round(recorded_seconds / wall, 1),
+            "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+        }
+
+
+def make_report(
+    recording: Recording,
+    statistics: Mapping[str, Any],
+    parameters: Mapping[str, Any],
+    recorded_seconds: float,
+    timings: Mapping[str, Any],
+    map_figures: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Everything that report.json holds. Only ``timings`` differs between two replays of the same input."""
+    return {
+        "input": recording.name,
+        "kind": recording.kind,
+        "notes": list(recording.notes),
+        "recorded_seconds": recorded_seconds,
+        **statistics,
+        "map": dict(map_figures),
+        "timings": dict(timings),
+        "parameters": dict(parameters),
+    }
+
+
+def format_table(report: Mapping[str, Any]) -> str:
+    """The figures as aligned lines of text."""
+    timings = report["timings"]
+    per_scan = timings["ms_per_scan"]
+    rows = [
+        ("scans", f"{report['scans']} ({report['scans_matched']} matched, {report['scans_too_small']} too small)"),
+        ("nodes", f"{report['nodes']} ({report['odometry_links']} linked by odometry{_reasons(report['match_refusals'])})"),
+        ("loop closures", _closures(report["loops"])),
+        ("dock closures", _closures(report["docks"])),
+        ("switched off", f"{report['map']['switched_off']} of {report['map']['switchable_edges']}"),
+        ("map", f"{report['map']['width']} x {report['map']['height']} cells of {report['map']['resolution']} m"),
+        ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),
+        ("times real time", f"{timings['times_real_time']:.0f}"),
+        ("CPU seconds", f"{timings['cpu_seconds']:.2f}"),
+        ("peak memory", f"{timings['peak_memory_mb']:.0f} MB"),
+    ]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _closures(counts: Mapping[str, Any]) -> str:
+    return f"{counts['tried']} tried, {counts['accepted']} accepted{_reasons(counts['refused'], ', refused: ')}"
+
+
+def _reasons(reasons: Mapping[str, int], lead: str = ": ") -> str:
+    return lead + ", ".join(f"{reason} {count}" for reason, count in sorted(reasons.items())) if reasons else ""

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a replay leaves in its folder."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from oort._core import Map, Parameters, render_map
+from oort.export import PoseGraph, write_g2o, write_map_server, write_picture, write_tum
+from oort.export.files import write_atomically
+from oort.recording import Recording
+from oort.report import Stopwatch, make_report
+from oort.session import Session
+from oort.trajectory import TrajectoryRecorder
+
+_SWITCHED_OFF = 0.5
+"""A switch below this counts as rejected by the solution (REQUIREMENTS 4.1)."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A replayed drive."""
+
+    recording: Recording
+    parameters: Parameters
+    session: Session
+    recorder: TrajectoryRecorder
+    watch: Stopwatch
+    recorded_seconds: float
+
+
+def write_results(drive: Drive, out: Path) -> dict[str, Any]:
+    """Writes trajectory.tum, map.pgm and .yaml, map.png, graph.g2o and report.json; returns the report."""
+    map_ = drive.session.map
+    base_poses = drive.recorder.base_poses(map_.node_poses)
+    grid = render_map(map_, drive.parameters)[0]
+    write_tum(out / "trajectory.tum", drive.recorder.stamps, base_poses)
+    write_g2o(out / "graph.g2o", _pose_graph(map_))
+    if grid.cells.size:
+        write_map_server(out / "map", grid.cells, grid.resolution, (*grid.origin, 0.0))
+        closures = _closure_ends(map_)
+        on = map_.switchable_edges["switch"] >= _SWITCHED_OFF
+        write_picture(
+            out / "map.png",
+            grid.cells,
+            grid.resolution,
+            (*grid.origin, 0.0),
+            trajectory=base_poses,
+            accepted=closures[on],
+            rejected=closures[~on],
+            locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
+        )
+    report = make_report(
+        drive.recording,
+        drive.session.mapper.statistics,
+        drive.parameters.to_dict(),
+        drive.recorded_seconds,
+        drive.watch.figures(drive.recorded_seconds),
+        {
+            "width": grid.cells.shape[1],
+            "height": grid.cells.shape[0],
+            "resolution": grid.resolution,
+            "switchable_edges": len(map_.switchable_edges["switch"]),
+            "switched_off": int((map_.switchable_edges["switch"] < _SWITCHED_OFF).sum()),
+        },
+    )
+    write_atomically(out / "report.json", (json.dumps(report, indent=2) + "\n").encode())
+    return report
+
+
+def _names(drive: Drive) -> list[tuple[str, str]]:
+    return [(space, id) for space, id, *_ in drive.session.mapper.locations]
+
+
+def _closure_ends(map_: Map) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """(k, 2, 2): where the two nodes of each closure are."""
+    edges = map_.switchable_edges
+    positions = map_.node_poses[:, :2]
+    return np.stack([positions[edges["i"]], positions[edges["j"]]], axis=1)
+
+
+def _pose_graph(map_: Map) -> PoseGraph:
+    """The graph as solved; what a closure's switch took from it is taken from its information too."""
+    chain, loops = map_.edges, map_.switchable_edges
+    weight = np.maximum(loops["switch"], 1e-3)[:, None, None] ** 2
+    return PoseGraph(
+        ids=map_.node_ids.astype(np.int64),
+        poses=map_.node_poses,
+        edges=np.concatenate(
+            [np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64) for edges in (chain, loops)]
+        ),
+        measurements=np.concatenate([chain["pose"], loops["pose"]]),
+        covariances=np.concatenate([chain["covariance"], loops["covariance"] / weight]),
+    )

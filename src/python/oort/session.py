@@ -1,0 +1,188 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""One robot's mapping session: the states, what each call does in them, and the saving.
+
+Replay, the ROS node and Python programs drive the same Session; only where the events come from differs.
+"""
+
+import enum
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from oort._core import Map, Mapper, Parameters, ScanResult, load_map, save_map
+from oort.errors import StateError
+from oort.locations import Locations, Pose
+from oort.recording import Scan
+
+
+class State(enum.Enum):
+    """What map/state answers."""
+
+    NOT_MAPPING = "not_mapping"
+    MAPPING = "mapping"
+    PAUSED = "paused"
+
+
+class Session:
+    """Takes scans and calls one at a time, in order."""
+
+    def __init__(self, parameters: Parameters, sensor_on_base: Pose = (0.0, 0.0, 0.0)) -> None:
+        """Starts empty and not mapping; ``sensor_on_base`` is T_base_sensor."""
+        self._parameters = parameters
+        self._sensor_on_base = sensor_on_base
+        self._state = State.NOT_MAPPING
+        self._path = ""
+        self._new_mapper()
+        self._calls: dict[str, Callable[..., Any]] = {
+            "map/start": self.start,
+            "map/load": self.load,
+            "map/resume": self.resume,
+            "map/notify_docked": self.notify_docked,
+            "map/pause": self.pause,
+            "map/resume_from_paused": self.resume_from_paused,
+            "map/stop": self.stop,
+            "map/clear": self.clear,
+            "graph_loc/create": self.create_location,
+            "graph_loc/create_points": self._create_points,
+            "graph_loc/delete": self._delete_location,
+            "graph_loc/clear": self._clear_locations,
+        }
+
+    # ---- what is there ----
+
+    @property
+    def state(self) -> State:
+        """The current state."""
+        return self._state
+
+    @property
+    def path(self) -> str:
+        """Where the map is saved; empty for nowhere."""
+        return self._path
+
+    @property
+    def mapper(self) -> Mapper:
+        """The owner of the map."""
+        return self._mapper
+
+    @property
+    def locations(self) -> Locations:
+        """The named places of the map."""
+        return self._locations
+
+    @property
+    def map(self) -> Map:
+        """A snapshot of the map."""
+        return self._mapper.map()
+
+    # ---- events ----
+
+    def call(self, name: str, args: Sequence[Any] = ()) -> Any:
+        """Runs a service call by its name under the node, such as ``map/notify_docked``.
+
+        Raises StateError for an unknown name, wrong arguments, or a call that the state does not allow.
+        """
+        if name not in self._calls:
+            raise StateError(f"no call {name!r}; the calls are: {', '.join(sorted(self._calls))}")
+        try:
+            return self._calls[name](*args)
+        except TypeError as error:
+            raise StateError(f"{name}: the arguments {list(args)!r} do not fit: {error}") from error
+
+    def add_scan(self, scan: Scan) -> ScanResult | None:
+        """Takes one scan with its odometry; None if the state is not mapping."""
+        if self._state is not State.MAPPING:
+            return None
+        result = self._mapper.add_scan(
+            scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, scan.odometry
+        )
+        self._locations.settle()
+        return result
+
+    # ---- map calls ----
+
+    def start(self, path: str = "") -> None:
+        """Begins a map, or goes on after a pause; ``path`` is where it is saved, empty for nowhere."""
+        if self._state is State.PAUSED:
+            self.resume_from_paused()
+        elif self._state is State.NOT_MAPPING:
+            if self._mapper.num_nodes > 0:
+                raise StateError("map/start: there is a map already; call map/clear first, or map/resume to go on with it")
+            self._state = State.MAPPING
+        self._path = path
+
+    def load(self, path: str) -> None:
+        """Replaces the map by one from disk; what is in memory stays if that fails."""
+        loaded = load_map(path)
+        self._new_mapper()
+        self._mapper.set_map(loaded)
+        self._state = State.NOT_MAPPING
+        self._path = path
+
+    def resume(self, path: str, pose: Pose) -> None:
+        """Goes on with the loaded map in a new chain; ``pose`` is about where the sensor is in the map frame."""
+        if self._state is not State.NOT_MAPPING:
+            raise StateError(f"map/resume: the state is {self._state.value}; call map/stop first")
+        if self._mapper.num_nodes == 0:
+            raise StateError("map/resume: no map is loaded; call map/load first")
+        x, y, theta = (float(value) for value in pose)
+        self._mapper.begin_session((x, y, theta))
+        self._path = path
+        self._state = State.MAPPING
+
+    def notify_docked(self) -> None:
+        """Says that the robot stands at the dock it saw earlier."""
+        if self._state is not State.MAPPING:
+            raise StateError(f"map/notify_docked: the state is {self._state.value}; it needs mapping")
+        self._mapper.notify_docked()
+
+    def pause(self) -> None:
+        """Stops taking scans until resume_from_paused or start."""
+        if self._state is State.NOT_MAPPING:
+            raise StateError("map/pause: nothing is being mapped; call map/start first")
+        self._state = State.PAUSED
+
+    def resume_from_paused(self) -> None:
+        """Takes scans again; the link across the pause is very uncertain."""
+        if self._state is State.NOT_MAPPING:
+            raise StateError("map/resume_from_paused: mapping is not paused; call map/start first")
+        if self._state is State.PAUSED:
+            self._mapper.resume_from_paused()
+            self._state = State.MAPPING
+
+    def stop(self) -> None:
+        """Ends mapping with a last solve, and saves the map if there is a path."""
+        if self._state is not State.NOT_MAPPING:
+            self._mapper.finish()
+            self._state = State.NOT_MAPPING
+        if self._path and self._mapper.num_nodes > 0:
+            save_map(self._path, self._mapper.map())
+
+    def clear(self) -> None:
+        """Drops the map and all places."""
+        self._new_mapper()
+        self._state = State.NOT_MAPPING
+        self._path = ""
+
+    # ---- location calls ----
+
+    def create_location(self, name_space: str, id: str) -> str:
+        """Records where the sensor is now under a name; returns the id."""
+        if self._state is not State.MAPPING:
+            raise StateError(
+                f"graph_loc/create: the state is {self._state.value} and no localiser tells where the robot is"
+            )
+        return self._locations.create_here(name_space, id)
+
+    def _create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
+        self._locations.create_points(name_spaces, points, ids)
+
+    def _delete_location(self, name_space: str, id: str) -> bool:
+        return self._locations.delete(name_space, id)
+
+    def _clear_locations(self, name_space: str, use_as_prefix: bool) -> list[tuple[str, str]]:
+        return self._locations.clear(name_space, use_as_prefix)
+
+    def _new_mapper(self) -> None:
+        self._mapper = Mapper(self._parameters, self._sensor_on_base)
+        self._locations = Locations(self._mapper)

@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""A planar range sensor: where its beams end, and what it says of that."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from oort.poses import Array
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """A depth sensor that looks forward; the defaults are a home robot's.
+
+    Beam i points to -field_of_view / 2 + i * field_of_view / beams. All beams of a scan are measured at once.
+    Errors, for a beam that ends at range r:
+
+    - noise: normal, of standard deviation ``noise + noise_per_metre * r``; ranges are told in whole millimetres;
+    - dropouts: no return with probability ``dropout * (1 + (r / range_max)^2)``, and more the more the beam grazes:
+      up to a half where it runs along the surface, none of it beyond 8.6 degrees;
+    - mixed pixels: where neighbouring beams end more than 10 cm apart, with probability ``mixed_pixels`` anywhere
+      between the two ends.
+    """
+
+    field_of_view: float = np.pi
+    """[rad]"""
+    beams: int = 180
+    range_min: float = 0.1
+    """[m]; what is closer gives no return"""
+    range_max: float = 3.0
+    """[m]; what is farther gives no return"""
+    noise: float = 0.005
+    """[m]"""
+    noise_per_metre: float = 0.005
+    dropout: float = 0.01
+    mixed_pixels: float = 0.25
+    mount: tuple[float, float, float] = (0.109, 0.0, 0.0)
+    """T_base_sensor: x [m], y [m], heading [rad]"""
+
+    def __post_init__(self) -> None:
+        """Refuse what no sensor has."""
+        if not 0.0 < self.field_of_view <= 2.0 * np.pi:
+            raise ValueError(f"field of view {np.degrees(self.field_of_view):g} degrees: choose one of 0 to 360")
+        if self.beams < 2:
+            raise ValueError(f"{self.beams} beams: choose at least 2")
+        if not 0.0 < self.range_min < self.range_max < np.inf:
+            raise ValueError(
+                f"ranges from {self.range_min:g} m to {self.range_max:g} m: choose a maximum above the minimum"
+            )
+
+    @property
+    def angle_min(self) -> float:
+        """Bearing of the first beam, rad."""
+        return -0.5 * self.field_of_view
+
+    @property
+    def angle_increment(self) -> float:
+        """Angle between neighbouring beams, rad."""
+        return self.field_of_view / self.beams
+
+    @property
+    def angles(self) -> Array:
+        """Bearings (beams,) in the sensor's frame, rad."""
+        return self.angle_min + self.angle_increment * np.arange(self.beams, dtype=np.float64)
+
+
+GRAZING = 0.15  # cosine of incidence below which dropouts rise
+EDGE = 0.1  # m between neighbouring beams' ends that makes a mixed pixel possible
+
+
+def cast(segments: Array, discs: Array, origin: Array, bearings: Array, reach: float) -> tuple[Array, Array]:
+    """Ends of beams from ``origin`` (x, y) at absolute ``bearings`` (b,) [rad], among segments (m, 4) and discs (k, 3).
+
+    Returns ranges (b,) [m], infinite where nothing is within ``reach``, and the cosine of incidence (b,), 1 head-on.
+    """
+    direction = np.column_stack([np.cos(bearings), np.sin(bearings)])
+    ranges, incidence = _cast_at_segments(_within(segments, origin, reach), origin, direction)
+    near = discs[np.hypot(discs[:, 0] - origin[0], discs[:, 1] - origin[1]) - discs[:, 2] <= reach]
+    if len(near):
+        to_disc = near[:, :2] - origin
+        along = direction @ to_disc.T
+        aside = direction[:, :1] * to_disc[:, 1] - direction[:, 1:] * to_disc[:, 0]
+        half_chord = np.sqrt(np.maximum(near[:, 2] ** 2 - aside**2, 0.0))
+        hit = np.where((np.abs(aside) <= near[:, 2]) & (along - half_chord > 0.0), along - half_chord, np.inf)
+        nearest = np.argmin(hit, axis=1)
+        rows = np.arange(len(bearings))
+        closer = hit[rows, nearest] < ranges
+        ranges = np.where(closer, hit[rows, nearest], ranges)
+        incidence = np.where(closer, half_chord[rows, nearest] / near[nearest, 2], incidence)
+    return np.where(ranges <= reach, ranges, np.inf), incidence
+
+
+def _within(segments: Array, origin: Array, reach: float) -> Array:
+    """The segments that come within reach of the origin."""
+    start, side = segments[:, :2] - origin, segments[:, 2:] - segments[:, :2]
+    along = np.clip(-np.sum(start * side, axis=1) / np.sum(side * side, axis=1), 0.0, 1.0)
+    return np.asarray(segments[np.hypot(*(start + along[:, None] * side).T) <= reach])
+
+
+def _cast_at_segments(segments: Array, origin: Array, direction: Array) -> tuple[Array, Array]:
+    """Ranges and cosines of incidence (b,) at segments alone."""
+    if not len(segments):
+        return np.full(len(direction), np.inf), np.ones(len(direction))
+    start, side = segments[:, :2] - origin, segments[:, 2:] - segments[:, :2]
+    across = direction[:, :1] * side[:, 1] - direction[:, 1:] * side[:, 0]  # (b, m), sine of the angle times length
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ranges = (start[:, 0] * side[:, 1] - start[:, 1] * side[:, 0]) / across
+        place = (start[:, 0] * direction[:, 1:] - start[:, 1] * direction[:, :1]) / across
+        hit = np.where((np.abs(place - 0.5) <= 0.5 + 1e-9) & (ranges > 0.0), ranges, np.inf)
+    nearest = np.argmin(hit, axis=1)
+    rows = np.arange(len(direction))
+    return hit[rows, nearest], np.abs(across[rows, nearest]) / np.hypot(*side[nearest].T)
+
+
+def cast_drive(
+    sensor: Sensor, poses: Array, segments: Array, discs: Array, legs: Array, radius: float
+) -> tuple[Array, Array]:
+    """True ranges and cosines of incidence (n, beams) from sensor poses (n, 3), with a person's legs (n, 2, 2)."""
+    ranges = np.empty((len(poses), sensor.beams))
+    incidence = np.empty_like(ranges)
+    for i, pose in enumerate(poses):
+        seen = discs if np.isnan(legs[i, 0, 0]) else np.vstack([discs, np.column_stack([legs[i], [radius, radius]])])
+        ranges[i], incidence[i] = cast(segments, seen, pose[:2], pose[2] + sensor.angles, sensor.range_max)
+    return ranges, incidence
+
+
+def measure(sensor: Sensor, true: Array, incidence: Array, rng: np.random.Generator) -> npt.NDArray[np.float32]:
+    """What the sensor says, (n, beams) float32 with infinity for no return, of true ranges and incidences."""
+    mixed = _mix_pixels(sensor, true, rng)
+    returned = np.isfinite(mixed)
+    r = np.where(returned, mixed, 0.0)
+    lost = sensor.dropout * (1.0 + (r / sensor.range_max) ** 2) + 0.5 * np.maximum(0.0, 1.0 - incidence / GRAZING)
+    returned &= rng.random(true.shape) >= lost
+    noisy = r + (sensor.noise + sensor.noise_per_metre * r) * rng.standard_normal(true.shape)
+    told = np.round(noisy, 3)
+    returned &= (told >= sensor.range_min) & (told < sensor.range_max)
+    return np.where(returned, told, np.inf).astype(np.float32)
+
+
+def _mix_pixels(sensor: Sensor, true: Array, rng: np.random.Generator) -> Array:
+    """True ranges with some of those at depth edges moved to somewhere between the two depths."""
+    following = np.concatenate([true[:, 1:], true[:, -1:]], axis=1)
+    edge = np.isfinite(true) & np.isfinite(following)
+    gap = np.where(edge, following, 0.0) - np.where(edge, true, 0.0)
+    edge &= (np.abs(gap) > EDGE) & (rng.random(true.shape) < sensor.mixed_pixels)
+    share = rng.random(true.shape)
+    return np.where(edge, true + share * gap, true)

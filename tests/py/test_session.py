@@ -1,0 +1,177 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+import itertools
+
+import numpy as np
+import pytest
+from oort import InputError, Parameters, Session, State, StateError, load_map
+from oort.recording import Scan
+
+
+def room_scan(x: float, y: float, theta: float, time: float) -> Scan:
+    """What 180 beams see in a room of 5 m by 4 m with a corner cut off by a box, from a pose that odometry knows."""
+    bearings = -np.pi / 2 + np.arange(180) * np.pi / 180
+    heading = theta + bearings
+    c, s = np.cos(heading), np.sin(heading)
+    with np.errstate(divide="ignore"):
+        walls = np.minimum(
+            np.where(c > 0, (3.0 - x) / c, (-2.0 - x) / c), np.where(s > 0, (2.5 - y) / s, (-1.5 - y) / s)
+        )
+    box = (1.5 + 0.6 - x - y) / (c + s)  # the line x + y = 2.1 stands for a sofa across the corner
+    ranges = np.where((box > 0) & (box < walls), box, walls).astype(np.float32)
+    return Scan(time, f"{time:.6f}", -np.pi / 2, np.pi / 180, 0.05, 6.0, ranges, (x, y, theta))
+
+
+def drive_around(session: Session, start: float = 0.0, scans: int = 60) -> None:
+    for i in range(scans):
+        session.add_scan(room_scan(0.01 * i, 0.0, 0.02 * i, start + 0.1 * i))
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(Parameters())
+
+
+def test_states(session: Session, tmp_path) -> None:
+    assert session.state is State.NOT_MAPPING
+    assert session.add_scan(room_scan(0, 0, 0, 0.0)) is None
+    session.start(str(tmp_path / "map"))
+    assert session.state is State.MAPPING
+    drive_around(session)
+    session.pause()
+    assert session.state is State.PAUSED
+    assert session.add_scan(room_scan(0, 0, 0, 100.0)) is None
+    session.start(str(tmp_path / "other"))
+    assert session.state is State.MAPPING
+    session.stop()
+    assert session.state is State.NOT_MAPPING
+    assert load_map(str(tmp_path / "other")).node_poses.shape == session.map.node_poses.shape
+    with pytest.raises(StateError, match="map/clear"):
+        session.start("")
+    session.clear()
+    assert session.mapper.num_nodes == 0
+    session.start("")
+
+
+@pytest.mark.parametrize("call", ["map/pause", "map/resume_from_paused", "map/notify_docked"])
+def test_calls_that_need_mapping(session: Session, call: str) -> None:
+    with pytest.raises(StateError):
+        session.call(call)
+
+
+def test_unknown_call_and_wrong_arguments(session: Session) -> None:
+    with pytest.raises(StateError, match="map/begin"):
+        session.call("map/begin")
+    with pytest.raises(StateError, match="arguments"):
+        session.call("map/start", ["a", "b"])
+
+
+def test_pose_follows_the_drive(session: Session) -> None:
+    session.start()
+    drive_around(session)
+    assert session.mapper.sensor_pose == pytest.approx((0.59, 0.0, 1.18), abs=0.01)
+    assert session.mapper.odom_pose == pytest.approx((0.0, 0.0, 0.0), abs=0.015)
+
+
+def test_location_before_the_first_scan_gets_its_pose(session: Session) -> None:
+    session.start()
+    session.create_location("dock", "dock")
+    with pytest.raises(StateError, match="no pose yet"):
+        session.locations.locate("dock", "dock")
+    drive_around(session)
+    assert session.locations.locate("dock", "dock") == pytest.approx((0, 0, 0))
+
+
+def test_locations_by_namespace_and_prefix(session: Session) -> None:
+    session.start()
+    drive_around(session)
+    for space, id in itertools.product(["place", "place/room", "dock"], "ab"):
+        session.create_location(space, id)
+    assert session.locations.list("place") == [("place", "a"), ("place", "b")]
+    assert len(session.locations.list("place", use_as_prefix=True)) == 4
+    assert session.locations.list("nowhere") == []
+    assert session.locations.list_namespaces() == ["place", "place/room", "dock"]
+    assert session.locations.delete("place", "a")
+    assert not session.locations.delete("place", "a")
+    assert session.locations.clear("place", use_as_prefix=True) == [("place", "b"), ("place/room", "a"), ("place/room", "b")]
+    assert session.locations.list("", use_as_prefix=True) == [("dock", "a"), ("dock", "b")]
+    with pytest.raises(StateError, match="graph_loc/list"):
+        session.locations.locate("place", "a")
+
+
+def test_points_share_a_node_and_keep_their_places(session: Session) -> None:
+    session.start()
+    drive_around(session)
+    session.call("graph_loc/create_points", [["spots", "spots"], [[1.0, 0.5, 0.0], [1.2, -0.5, 0.0]], ["p", "q"]])
+    assert session.locations.locate("spots", "p") == pytest.approx((1.0, 0.5, 0.0))
+    assert session.locations.locate("spots", "q") == pytest.approx((1.2, -0.5, 0.0))
+    nodes = {node for _, id, node, _ in session.mapper.locations if id in "pq"}
+    assert len(nodes) == 1
+    with pytest.raises(StateError, match="one namespace"):
+        session.locations.create_points(["spots"], [], [])
+
+
+def test_resume_adds_a_chain_and_corrects_the_start_pose(session: Session, tmp_path) -> None:
+    session.start(str(tmp_path / "old"))
+    drive_around(session, scans=150)
+    session.stop()
+    old = load_map(str(tmp_path / "old"))
+
+    again = Session(Parameters())
+    with pytest.raises(StateError, match="map/load"):
+        again.resume(str(tmp_path / "new"), (0, 0, 0))
+    again.load(str(tmp_path / "old"))
+    again.resume(str(tmp_path / "new"), (0.15, -0.1, 0.1))  # the truth is 0, 0, 0
+    drive_around(again, start=1000.0, scans=150)
+    again.stop()
+    new = load_map(str(tmp_path / "new"))
+    first = len(old.node_ids)
+    assert new.node_poses[:first] == pytest.approx(old.node_poses, abs=0.02)
+    assert new.node_poses[first] == pytest.approx((0, 0, 0), abs=0.03)
+    assert load_map(str(tmp_path / "old")).node_poses == pytest.approx(old.node_poses)
+
+
+def test_pause_links_loosely_and_stays_one_map(session: Session) -> None:
+    session.start()
+    drive_around(session, scans=60)
+    before = session.mapper.num_nodes
+    session.pause()
+    session.resume_from_paused()
+    drive_around(session, start=50.0, scans=1)
+    edges = session.map.edges
+    assert session.mapper.num_nodes == before + 1
+    assert edges["covariance"][-1, 0, 0] > 100 * edges["covariance"][:-1, 0, 0].max()
+
+
+def test_parked_robot_adds_nothing(session: Session) -> None:
+    session.start()
+    drive_around(session)
+    nodes = session.mapper.num_nodes
+    for i in range(300):
+        session.add_scan(room_scan(0.59, 0.0, 1.18, 10.0 + 0.1 * i))
+    assert session.mapper.num_nodes == nodes
+
+
+def test_useless_scans_are_survived(session: Session) -> None:
+    session.start()
+    drive_around(session)
+    nothing = np.full(180, np.nan, np.float32)
+    for i, ranges in enumerate([nothing, nothing[:0], np.full(7, np.inf, np.float32)]):
+        result = session.add_scan(Scan(20.0 + i, "20", -1.5, 0.1, 0.05, 6.0, ranges, (0.6, 0.0, 1.2)))
+        assert result is not None and result.outcome == "skipped"
+    with pytest.raises(InputError):
+        session.add_scan(Scan(30.0, "30", -1.5, 0.1, 0.05, 6.0, nothing, (np.nan, 0.0, 0.0)))
+    drive_around(session, start=40.0)
+    assert session.mapper.sensor_pose == pytest.approx((0.59, 0.0, 1.18), abs=0.02)
+
+
+def test_same_events_same_bytes(tmp_path) -> None:
+    for name in ("a", "b"):
+        session = Session(Parameters())
+        session.start(str(tmp_path / name))
+        session.create_location("dock", "dock")
+        drive_around(session, scans=150)
+        session.notify_docked()
+        session.stop()
+    for suffix in (".map_capnp", ".map_meta_capnp"):
+        assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "frsm/contours.hpp"
+#include "frsm/table.hpp"
+
+namespace frsm {
+
+/// The last scans, drawn. Two tables overlap by half: every scan is drawn into both, the older is the one to match
+/// against, and when it holds `max_scans` it is dropped for the younger, which then holds half as many. So nothing is
+/// ever redrawn or removed, and the map to match against holds between max_scans / 2 and max_scans scans (fewer at the
+/// start).
+class History {
+ public:
+  /// max_scans >= 2.
+  History(const TableParams& params, int max_scans);
+
+  /// Draws a scan given in the table's frame, seen from `origin`.
+  void add(const Points& world, const std::vector<Contour>& contours, const Pose& origin);
+  void clear();
+
+  const Table& table() const { return older_.table; }
+  int num_scans() const { return older_.scans; }
+  std::size_t bytes() const { return older_.table.bytes() + younger_.table.bytes(); }
+
+ private:
+  struct Layer {
+    Table table;
+    int scans = 0;
+  };
+  Layer older_;
+  Layer younger_;
+  int max_scans_;
+};
+
+}  // namespace frsm

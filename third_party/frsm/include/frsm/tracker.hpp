@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "frsm/contours.hpp"
+#include "frsm/history.hpp"
+#include "frsm/matcher.hpp"
+#include "frsm/table.hpp"
+
+namespace frsm {
+
+/// When a matched scan joins the local map. A scan joins if the match is usable, at least `min_hits` of its points hit,
+/// the robot has moved by `min_distance` or `min_angle` since the last one joined, and either it is a key scan or fewer
+/// than `hit_threshold` of its points hit.
+struct AddRule {
+  double hit_threshold = 0.9;  ///< fraction of the points
+  double min_hits = 0.4;       ///< fraction of the points
+  double key_distance = 0.2;   ///< a key scan is this far from the last one that joined [m]; infinity: never
+  double key_angle = 0.2;      ///< or turned by this much [rad]; infinity: never
+  double min_distance = 0.03;  ///< [m]; 0: a robot at rest may add scans
+  double min_angle = 0.03;     ///< [rad]
+
+  /// The original's rule: a scan joins whenever fewer than `hit_threshold` of its points hit.
+  static AddRule by_hits(double hit_threshold);
+};
+
+struct TrackerParams {
+  TableParams table;
+  ContourParams contours;
+  MatcherParams matcher;
+  AddRule add;
+  int max_num_scans = 40;                 ///< history: the local map holds the last K/2 to K scans that joined (>= 2)
+  double initial_search_range_xy = 0.06;  ///< smallest half window [m]
+  double max_search_range_xy = 0.25;      ///< largest half window [m]
+  double initial_search_range_theta = 0.05;  ///< [rad]
+  double max_search_range_theta = 0.25;      ///< [rad]
+  bool stationary_motion_model = false;      ///< without odometry: expect no motion, rather than constant velocity
+  double prior_sigma_xy = 0.1;               ///< of the expected pose without odometry [m]
+  double prior_sigma_theta = 0.1;            ///< [rad]
+  double min_prior_sigma_xy = 0.005;         ///< added to the covariance of the odometry [m]
+  double min_prior_sigma_theta = 0.005;      ///< [rad]
+  double retry_hits = 0.8;     ///< a match with fewer hits, or on the window's border, is tried again (0: never)
+  int max_rejected_scans = 5;  ///< after as many unusable scans in a row a fresh local map starts
+
+  /// Throws std::invalid_argument that names the field when a value makes no sense.
+  void validate() const;
+};
+
+/// Follows a sensor by matching each scan against a local map of recent scans. Deterministic; not thread-safe.
+class Tracker {
+ public:
+  explicit Tracker(const TrackerParams& params = {});
+
+  /// Matches the next scan. `body`: its points in the body frame, in sensor order; `time` [s]: only for the constant
+  /// velocity model; `odometry`: the motion since the previous call, if known.
+  /// If the match is usable its pose becomes the tracker's, else the expected pose does (match.pose says which it is).
+  /// The first scan after construction, reset() or a fresh start has nothing to match and returns kNoOverlap.
+  /// Throws std::invalid_argument on an odometry that is not finite, or whose covariance is not positive semi-definite.
+  Match track(const Points& body, double time, const std::optional<Motion>& odometry);
+
+  /// Forgets the local map and starts anew at a pose.
+  void reset(const Pose& pose);
+
+  /// Overrules the pose of the last scan, which then does not join the local map (but for the first, which joins
+  /// there).
+  void set_pose(const Pose& pose);
+
+  const Pose& pose() const { return pose_; }
+
+  /// The local map that the next scan is matched against, without the last scan, which joins at the next call of
+  /// track().
+  const Table& table() const { return history_.table(); }
+
+  /// Scans drawn in table().
+  int num_scans() const { return history_.num_scans(); }
+  /// Scans that joined a local map since construction.
+  long added_scans() const { return added_scans_; }
+  /// Scans that were tried again with another guess or a wider window.
+  long retries() const { return retries_; }
+  /// Fresh local maps after max_rejected_scans.
+  long restarts() const { return restarts_; }
+
+  const TrackerParams& params() const { return params_; }
+
+ private:
+  struct Pending {
+    Points body;
+    Pose pose;
+  };
+  void join_pending();
+  Prior expect(double time, const std::optional<Motion>& odometry) const;
+  Pose predict(double time) const;
+  Window window(const Prior& prior, double scale) const;
+  Match try_match(const Points& body, const Prior& prior, double widen) const;
+  Match recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best);
+  Match start(const Points& body, double time, const Prior& expected);
+  bool should_add(const Match& match) const;
+  void remember(const Pose& pose, double time, const Eigen::Matrix3d& expected, bool usable);
+
+  TrackerParams params_;
+  Matcher matcher_;
+  History history_;
+  Pose pose_;
+  Pose last_added_;
+  Eigen::Matrix3d drift_ =
+      Eigen::Matrix3d::Zero();      // covariance of the motion since the last usable match, table's axes
+  std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled
+  std::optional<double> last_time_;
+  Pose velocity_;     // body twist [m/s, m/s, rad/s]
+  int rejected_ = 0;  // unusable scans in a row
+  long added_scans_ = 0;
+  long retries_ = 0;
+  long restarts_ = 0;
+};
+
+}  // namespace frsm

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "frsm/contours.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <tuple>
+
+#include "check.hpp"
+
+namespace frsm {
+namespace {
+
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+struct Link {
+  std::size_t to = kNone;
+  double length = -1.0;  // an absent link counts as a short one
+  bool taken() const { return to != kNone; }
+};
+
+struct Node {
+  Link left, right;  // to a smaller and to a larger index
+};
+
+// (length, point that asks, partner): exact lexicographic order makes the result independent of the heap's insides.
+using Proposal = std::tuple<double, std::size_t, std::size_t>;
+
+class Linker {
+ public:
+  Linker(const Points& points, const ContourParams& params) : points_(points), params_(params), nodes_(points.size()) {}
+
+  std::vector<Contour> run() {
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      propose(p, -1);
+      propose(p, +1);
+    }
+    while (!queue_.empty()) {
+      const auto [length, p, q] = queue_.top();
+      queue_.pop();
+      const int side = q < p ? -1 : +1;
+      if (facing(p, side).taken()) continue;
+      if (facing(q, -side).taken()) {
+        propose(p, side);
+      } else if (acceptable(length, nodes_[std::min(p, q)].left, nodes_[std::max(p, q)].right)) {
+        facing(p, side) = {q, length};
+        facing(q, -side) = {p, length};
+      }
+    }
+    return chains();
+  }
+
+ private:
+  Link& facing(std::size_t p, int side) { return side < 0 ? nodes_[p].left : nodes_[p].right; }
+
+  // The best free partner on one side, looking outwards from p.
+  void propose(std::size_t p, int side) {
+    double best = params_.max_adjacent_distance;
+    std::size_t partner = kNone;
+    for (int k = 1; k <= params_.search_range; ++k) {
+      const std::size_t q = p + static_cast<std::size_t>(k) * static_cast<std::size_t>(side);  // wraps below 0
+      if (q >= points_.size()) break;
+      if (facing(q, -side).taken()) continue;
+      const double d = std::hypot(points_[p].x - points_[q].x, points_[p].y - points_[q].y);
+      if (d < best) {
+        best = d;
+        partner = q;
+      }
+      if (d <= params_.always_accept_distance) break;
+    }
+    if (partner != kNone) queue_.emplace(best, p, partner);
+  }
+
+  // A long link must continue the spacing of the links beside it: walls seen at a grazing angle do, gaps do not.
+  bool acceptable(double length, const Link& before, const Link& after) const {
+    if (length <= params_.always_okay_distance) return true;
+    for (const Link& beside : {before, after}) {
+      if (beside.length > params_.min_distance_for_ratio) {
+        if (length / beside.length > params_.max_distance_ratio) return false;
+      } else if (length > params_.max_distance_without_ratio) {
+        return false;
+      }
+    }
+    return before.taken() || after.taken() || length <= params_.max_first_distance;
+  }
+
+  std::vector<Contour> chains() const {
+    std::vector<Contour> contours;
+    for (std::size_t p = 0; p < nodes_.size(); ++p) {
+      if (nodes_[p].left.taken()) continue;
+      contours.emplace_back();
+      for (std::size_t q = p; q != kNone; q = nodes_[q].right.to) contours.back().push_back(q);
+    }
+    return contours;
+  }
+
+  const Points& points_;
+  const ContourParams& params_;
+  std::vector<Node> nodes_;
+  std::priority_queue<Proposal, std::vector<Proposal>, std::greater<>> queue_;
+};
+
+}  // namespace
+
+ContourParams ContourParams::utm() {
+  ContourParams params;
+  params.max_adjacent_distance = 6.0;
+  params.max_distance_ratio = 2.0;
+  params.search_range = 10;
+  return params;
+}
+
+ContourParams ContourParams::urg() {
+  ContourParams params;
+  params.max_adjacent_distance = 0.3;
+  params.always_okay_distance = 0.15;
+  params.always_accept_distance = 0.05;
+  params.max_first_distance = 0.2;
+  params.max_distance_ratio = 100.0;
+  params.search_range = 8;
+  return params;
+}
+
+ContourParams ContourParams::sick() { return {}; }
+
+void ContourParams::validate() const {
+  check(max_adjacent_distance > 0.0, "ContourParams.max_adjacent_distance", "must be above 0 m");
+  check(always_okay_distance >= 0.0, "ContourParams.always_okay_distance", "must not be negative");
+  check(always_accept_distance >= 0.0, "ContourParams.always_accept_distance", "must not be negative");
+  check(max_first_distance >= 0.0, "ContourParams.max_first_distance", "must not be negative");
+  check(max_distance_ratio > 0.0, "ContourParams.max_distance_ratio", "must be above 0");
+  check(min_distance_for_ratio >= 0.0, "ContourParams.min_distance_for_ratio", "must not be negative");
+  check(max_distance_without_ratio >= 0.0, "ContourParams.max_distance_without_ratio", "must not be negative");
+  check(search_range >= 1, "ContourParams.search_range", "must be at least 1");
+}
+
+std::vector<Contour> extract_contours(const Points& points, const ContourParams& params) {
+  params.validate();
+  return Linker(points, params).run();
+}
+
+}  // namespace frsm

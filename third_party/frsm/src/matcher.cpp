@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "frsm/matcher.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "check.hpp"
+#include "refine.hpp"
+#include "search.hpp"
+
+namespace frsm {
+namespace {
+
+constexpr double kPolishReach = 1.5;  // cells and heading steps about the best pose of the lattice
+
+// Points that fall in one cell are not independent.
+std::size_t independent_points(const Points& body, double cell) {
+  std::vector<std::pair<long, long>> cells;
+  cells.reserve(body.size());
+  for (const Point& p : body) cells.emplace_back(std::lround(p.x / cell), std::lround(p.y / cell));
+  std::sort(cells.begin(), cells.end());
+  return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
+}
+
+// The smallest number of steps that reach the half width.
+int steps(double half_width, double step) { return static_cast<int>(std::ceil(half_width / step - 1e-9)); }
+
+Lattice make_lattice(const Pose& guess, const Window& window, double cell, double theta_step) {
+  return {guess, cell, theta_step, steps(window.x, cell), steps(window.y, cell), steps(window.theta, theta_step)};
+}
+
+bool on_border(const Lattice& lattice, const Candidate& c) {
+  const auto at_end = [](int i, int n) { return n > 0 && std::abs(i) == n; };
+  return at_end(c.ix, lattice.nx) || at_end(c.iy, lattice.ny) || at_end(c.it, lattice.nt);
+}
+
+void check_input(const Pose& guess, const Window& window, const Prior* prior) {
+  check(is_finite(guess), "the guess", "is not finite");
+  check(window.x >= 0.0 && window.y >= 0.0 && window.theta >= 0.0, "the window", "has a negative half width");
+  check(std::isfinite(window.x + window.y + window.theta), "the window", "is not finite");
+  if (prior == nullptr) return;
+  check(is_finite(prior->mean), "the prior's mean", "is not finite");
+  check(prior->covariance.allFinite() && Eigen::LLT<Eigen::Matrix3d>(prior->covariance).info() == Eigen::Success,
+        "the prior's covariance", "is not positive definite");
+}
+
+// What is known when the scan tells nothing.
+Match unmatched(Status status, const Pose& guess, const Window& window, const Prior* prior, double cell, double theta_step,
+                std::size_t points) {
+  Match match;
+  match.status = status;
+  match.pose = guess;
+  match.points = static_cast<int>(points);
+  const Eigen::Vector3d widths(std::max(window.x, cell), std::max(window.y, cell), std::max(window.theta, theta_step));
+  match.covariance = prior != nullptr ? prior->covariance : Eigen::Matrix3d(widths.cwiseAbs2().asDiagonal());
+  return match;
+}
+
+void count_hits(const Table& table, const Points& body, int hit_value, Match* match) {
+  double sum = 0.0;
+  for (const Point& p : transform(match->pose, body)) {
+    const int value = table.value(table.index(p.x), table.index(p.y));
+    sum += value;
+    if (value >= hit_value) ++match->hits;
+  }
+  match->points = static_cast<int>(body.size());
+  match->hit_fraction = match->hits / static_cast<double>(body.size());
+  match->score = sum / (255.0 * static_cast<double>(body.size()));
+}
+
+Status judge(const Match& match, const MatcherParams& params) {
+  if (match.hit_fraction < params.min_hit_fraction) return Status::kLowHits;
+  if (match.saturated) return Status::kSaturated;
+  return match.degenerate ? Status::kDegenerate : Status::kOk;
+}
+
+}  // namespace
+
+std::string_view to_string(Status status) {
+  switch (status) {
+    case Status::kOk:
+      return "ok";
+    case Status::kEmptyScan:
+      return "empty scan";
+    case Status::kTooFewPoints:
+      return "too few points";
+    case Status::kNoOverlap:
+      return "no overlap";
+    case Status::kSaturated:
+      return "saturated";
+    case Status::kDegenerate:
+      return "degenerate";
+    case Status::kLowHits:
+      return "low hits";
+  }
+  return "unknown";
+}
+
+void MatcherParams::validate() const {
+  check(theta_step > 0.0 && theta_step <= 1.0, "MatcherParams.theta_step", "must be above 0 and at most 1 rad");
+  check(hit_value >= 1 && hit_value <= 255, "MatcherParams.hit_value", "must be 1 to 255");
+  check(min_points >= 1, "MatcherParams.min_points", "must be at least 1");
+  check(min_hit_fraction >= 0.0 && min_hit_fraction <= 1.0, "MatcherParams.min_hit_fraction", "must be 0 to 1");
+  check(information_scale > 0.0 && std::isfinite(information_scale), "MatcherParams.information_scale", "must be above 0");
+  check(min_curvature >= 0.0 && min_curvature <= 1.0, "MatcherParams.min_curvature", "must be 0 to 1");
+  check(ambiguity_floor > 0.0, "MatcherParams.ambiguity_floor", "must be above 0");
+  check(exhaustive_limit >= 1, "MatcherParams.exhaustive_limit", "must be at least 1");
+}
+
+Matcher::Matcher(const MatcherParams& params) : params_(params) { params_.validate(); }
+
+Match Matcher::match(const Table& table, const Points& body, const Pose& guess, const Window& window,
+                     const Prior* prior) const {
+  check_input(guess, window, prior);
+  const Points points = drop_invalid(body);
+  const double cell = table.params().cell;
+  const auto give_up = [&](Status status) {
+    return unmatched(status, guess, window, prior, cell, params_.theta_step, points.size());
+  };
+  if (points.empty()) return give_up(Status::kEmptyScan);
+  if (points.size() < static_cast<std::size_t>(params_.min_points)) return give_up(Status::kTooFewPoints);
+  if (table.empty()) return give_up(Status::kNoOverlap);
+
+  const double weight = params_.information_scale * static_cast<double>(independent_points(points, cell));
+  const Search search{table, points, make_lattice(guess, window, cell, params_.theta_step),
+                      Objective(weight, points.size(), prior), std::nullopt};
+  const Candidate best = *search_all(search);
+  if (best.sum == 0) return give_up(Status::kNoOverlap);
+
+  Match match;
+  match.saturated = on_border(search.lattice, best);
+  match.pose = polish(table, points, search.objective, search.lattice.at(best.it, best.ix, best.iy),
+                      {kPolishReach * cell, kPolishReach * cell, kPolishReach * params_.theta_step});
+  count_hits(table, points, params_.hit_value, &match);
+  const Shape shape = fit_shape(table, points, match.pose, weight, params_.min_curvature, window);
+  match.information = shape.information;
+  match.degenerate = shape.degenerate;
+  match.covariance =
+      (shape.information + (prior != nullptr ? search.objective.information() : shape.window_information)).inverse();
+  match.status = judge(match, params_);
+  return match;
+}
+
+}  // namespace frsm

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "frsm/tracker.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "check.hpp"
+
+namespace frsm {
+namespace {
+
+constexpr double kWindowSigmas = 3.0;
+constexpr double kWorthwhileHits = 0.02;  // another guess must bring this many more hits to be believed
+constexpr double kRetryWindow = 3.0;      // the last try's window, and its prior's standard deviations twice as wide
+constexpr double kRetryPrior = 2.0;
+constexpr double kLongestStep = 2.0;      // the constant velocity is not drawn out over more than this [s]
+
+Eigen::Matrix3d diagonal(double sigma_xy, double sigma_theta) {
+  const Eigen::Vector3d variances(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_theta * sigma_theta);
+  return variances.asDiagonal();
+}
+
+void check_motion(const Motion& motion) {
+  check(is_finite(motion.delta), "the odometry", "is not finite");
+  const Eigen::Matrix3d& c = motion.covariance;
+  // A unit of rounding above zero, so that an exact odometry (zero covariance) passes.
+  const Eigen::Matrix3d raised = c + (1e-9 * c.diagonal().cwiseAbs().maxCoeff() + 1e-15) * Eigen::Matrix3d::Identity();
+  check(c.allFinite() && Eigen::LLT<Eigen::Matrix3d>(raised).info() == Eigen::Success, "the odometry's covariance",
+        "is not positive semi-definite");
+}
+
+}  // namespace
+
+AddRule AddRule::by_hits(double hit_threshold) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  return {hit_threshold, 0.0, kNever, kNever, 0.0, 0.0};
+}
+
+Tracker::Tracker(const TrackerParams& params)
+    : params_((params.validate(), params)), matcher_(params.matcher), history_(params.table, params.max_num_scans) {}
+
+void TrackerParams::validate() const {
+  table.validate();
+  contours.validate();
+  matcher.validate();
+  check(max_num_scans >= 2, "TrackerParams.max_num_scans", "must be at least 2");
+  check(initial_search_range_xy >= 0.0 && initial_search_range_xy <= max_search_range_xy,
+        "TrackerParams.initial_search_range_xy", "must be 0 to max_search_range_xy");
+  check(initial_search_range_theta >= 0.0 && initial_search_range_theta <= max_search_range_theta,
+        "TrackerParams.initial_search_range_theta", "must be 0 to max_search_range_theta");
+  check(max_search_range_xy <= 10.0, "TrackerParams.max_search_range_xy", "must be at most 10 m");
+  check(max_search_range_theta <= 4.0, "TrackerParams.max_search_range_theta", "must be at most 4 rad");
+  check(prior_sigma_xy > 0.0 && prior_sigma_theta > 0.0, "TrackerParams.prior_sigma", "must be above 0");
+  check(min_prior_sigma_xy > 0.0 && min_prior_sigma_theta > 0.0, "TrackerParams.min_prior_sigma", "must be above 0");
+  check(max_rejected_scans >= 1, "TrackerParams.max_rejected_scans", "must be at least 1");
+}
+
+Match Tracker::track(const Points& body, double time, const std::optional<Motion>& odometry) {
+  if (odometry) check_motion(*odometry);
+  check(std::isfinite(time), "the time of a scan", "is not finite");
+  join_pending();
+  const Prior expected = expect(time, odometry);
+  if (history_.table().empty()) return start(body, time, expected);
+  Match match = recover(body, time, expected, odometry.has_value(), try_match(body, expected, 1.0));
+  // On the window's border but with good hits, the pose is still the best known; it must not shape the map, though.
+  const bool usable =
+      match.usable() || (match.status == Status::kSaturated && match.hit_fraction >= params_.retry_hits);
+  if (!usable) match.pose = expected.mean;
+  if (match.usable() && should_add(match)) pending_ = Pending{drop_invalid(body), match.pose};
+  remember(match.pose, time, expected.covariance, usable);
+  if (rejected_ >= params_.max_rejected_scans) {
+    ++restarts_;
+    history_.clear();
+    return start(body, time, expected);
+  }
+  return match;
+}
+
+void Tracker::reset(const Pose& pose) {
+  check(is_finite(pose), "the pose", "is not finite");
+  history_.clear();
+  pending_.reset();
+  last_time_.reset();
+  velocity_ = Pose{};
+  drift_.setZero();
+  pose_ = pose;
+  rejected_ = 0;
+}
+
+void Tracker::set_pose(const Pose& pose) {
+  check(is_finite(pose), "the pose", "is not finite");
+  if (pending_ && history_.table().empty()) {
+    pending_->pose = pose;  // the first scan carries the map, wherever it is
+  } else {
+    pending_.reset();
+  }
+  pose_ = pose;
+}
+
+// The first scan of a local map: there is nothing to match it against.
+Match Tracker::start(const Points& body, double time, const Prior& expected) {
+  Match match;
+  Points points = drop_invalid(body);
+  match.pose = expected.mean;
+  match.points = static_cast<int>(points.size());
+  match.covariance = expected.covariance;
+  match.status = Status::kNoOverlap;
+  if (points.empty()) {
+    match.status = Status::kEmptyScan;
+  } else if (match.points < params_.matcher.min_points) {
+    match.status = Status::kTooFewPoints;
+  } else {
+    pending_ = Pending{std::move(points), match.pose};
+  }
+  remember(match.pose, time, expected.covariance, pending_.has_value());
+  return match;
+}
+
+void Tracker::join_pending() {
+  if (!pending_) return;
+  const Points world = transform(pending_->pose, pending_->body);
+  history_.add(world, extract_contours(pending_->body, params_.contours), pending_->pose);
+  last_added_ = pending_->pose;
+  ++added_scans_;
+  pending_.reset();
+}
+
+Prior Tracker::expect(double time, const std::optional<Motion>& odometry) const {
+  Prior prior;
+  if (odometry) {
+    prior.mean = pose_ * odometry->delta;
+    prior.covariance = drift_ + rotate_covariance(odometry->covariance, pose_.theta) +
+                       diagonal(params_.min_prior_sigma_xy, params_.min_prior_sigma_theta);
+  } else {
+    prior.mean = predict(time);
+    prior.covariance = drift_ + diagonal(params_.prior_sigma_xy, params_.prior_sigma_theta);
+  }
+  return prior;
+}
+
+// Where the last motion leads, in the body's frame and by time, bounded by the largest search ranges.
+Pose Tracker::predict(double time) const {
+  if (params_.stationary_motion_model || !last_time_) return pose_;
+  const double dt = std::clamp(time - *last_time_, 0.0, kLongestStep);
+  const auto bounded = [](double value, double limit) { return std::clamp(value, -limit, limit); };
+  return pose_ * Pose{bounded(velocity_.x * dt, params_.max_search_range_xy),
+                      bounded(velocity_.y * dt, params_.max_search_range_xy),
+                      bounded(velocity_.theta * dt, params_.max_search_range_theta)};
+}
+
+Window Tracker::window(const Prior& prior, double scale) const {
+  const auto half = [&](int i, double low, double high) {
+    return scale * std::clamp(kWindowSigmas * std::sqrt(prior.covariance(i, i)), low, high);
+  };
+  return {half(0, params_.initial_search_range_xy, params_.max_search_range_xy),
+          half(1, params_.initial_search_range_xy, params_.max_search_range_xy),
+          half(2, params_.initial_search_range_theta, params_.max_search_range_theta)};
+}
+
+Match Tracker::try_match(const Points& body, const Prior& prior, double widen) const {
+  return matcher_.match(history_.table(), body, prior.mean, window(prior, widen), &prior);
+}
+
+// Odometry freezes and jumps at times. A poor match is tried again where the robot would be if it had kept its velocity,
+// then in a wider window; another pose is believed only if clearly more points hit.
+Match Tracker::recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best) {
+  const auto poor = [&] {
+    return best.status == Status::kNoOverlap || (best.points >= params_.matcher.min_points &&
+                                                 (best.saturated || best.hit_fraction < params_.retry_hits));
+  };
+  const auto consider = [&](const Match& other) {
+    const bool freed = best.saturated && !other.saturated && other.hit_fraction >= best.hit_fraction;
+    if (freed || other.hit_fraction > best.hit_fraction + kWorthwhileHits) best = other;
+  };
+  if (params_.retry_hits <= 0.0 || !poor()) return best;
+  ++retries_;
+  if (has_odometry && !params_.stationary_motion_model) {
+    const Prior kept{predict(time), drift_ + diagonal(params_.prior_sigma_xy, params_.prior_sigma_theta)};
+    consider(try_match(body, kept, 1.0));
+  }
+  if (poor()) consider(try_match(body, {expected.mean, kRetryPrior * kRetryPrior * expected.covariance}, kRetryWindow));
+  return best;
+}
+
+bool Tracker::should_add(const Match& match) const {
+  const AddRule& rule = params_.add;
+  if (match.hit_fraction < rule.min_hits) return false;
+  const double moved = distance(match.pose, last_added_);
+  const double turned = std::abs(wrap(match.pose.theta - last_added_.theta));
+  if (moved < rule.min_distance && turned < rule.min_angle) return false;
+  return moved >= rule.key_distance || turned >= rule.key_angle || match.hit_fraction < rule.hit_threshold;
+}
+
+void Tracker::remember(const Pose& pose, double time, const Eigen::Matrix3d& expected, bool usable) {
+  const double dt = last_time_ ? time - *last_time_ : 0.0;
+  if (dt > 0.0) {  // else keep the velocity: clocks of logs step back now and then
+    const Pose moved = between(pose_, pose);
+    velocity_ = {moved.x / dt, moved.y / dt, moved.theta / dt};
+  }
+  last_time_ = time;
+  pose_ = pose;
+  rejected_ = usable ? 0 : rejected_ + 1;
+  drift_ = usable ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : expected;
+}
+
+}  // namespace frsm
