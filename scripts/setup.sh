@@ -34,5 +34,5 @@ fi
 # Debian's own interpreter, with its site packages: rospy lives there.
 [ -x .venv/bin/python ] || /usr/bin/python3 -m venv --system-site-packages .venv
 .venv/bin/python -m pip install --quiet --disable-pip-version-check --upgrade pip
-.venv/bin/pip install --quiet "scikit-build-core>=0.10" "pybind11>=2.10"
+.venv/bin/pip install --quiet "scikit-build-core>=0.10" "pybind11>=2.12"
 .venv/bin/pip install --quiet --no-build-isolation -C build-dir=build/dev -C cmake.define.OORT_TESTS=$test -e ".$extra"

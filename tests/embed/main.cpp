@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 // Maps a square room from its middle with the C++ library, then renders, saves and loads the map.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -46,8 +47,7 @@ int main(int argc, char** argv) {
     mapper.finish();
     oort::save_map(argv[1], mapper.map());
     const oort::Map loaded = oort::load_map(argv[1]);
-    const oort::OccupancyGrid grid =
-        oort::render(loaded.graph.nodes, loaded.clouds, oort::render_options(oort::Parameters{}));
+    const oort::OccupancyGrid grid = oort::render(loaded.graph.nodes, loaded.clouds, oort::Parameters{}.output_map).map;
     std::cout << loaded.graph.nodes.size() << " nodes, " << grid.width << " x " << grid.height << " cells, "
               << loaded.locations.size() << " location\n";
   } catch (const oort::Error& error) {

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+
 from oort.simulate import Drive, simulate_drive
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from oort import InputError
 from oort.events import Event, read_events
 
@@ -38,5 +39,5 @@ def test_says_what_is_wrong(tmp_path: Path, text: str, complaint: str) -> None:
 
 
 def test_missing_file() -> None:
-    with pytest.raises(InputError, match="nowhere.json"):
+    with pytest.raises(InputError, match="nowhere\\.json"):
         read_events("nowhere.json")

@@ -85,7 +85,10 @@ def test_graphs_that_do_not_fit_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.g2o"
     with pytest.raises(InputError, match=r"nodes that do not exist: \[4\]"):
         write_g2o(
-            path, PoseGraph(good.ids, good.poses, good.edges - [[0, 0], [1, 0]], good.measurements, good.covariances)
+            path,
+            PoseGraph(
+                good.ids, good.poses, good.edges - np.array([[0, 0], [1, 0]]), good.measurements, good.covariances
+            ),
         )
     with pytest.raises(InputError, match="2 edges, 1 measurements"):
         write_g2o(path, PoseGraph(good.ids, good.poses, good.edges, good.measurements[:1], good.covariances))

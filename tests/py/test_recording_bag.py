@@ -134,7 +134,7 @@ def test_two_odom_frames_above_the_laser_must_be_chosen(tmp_path: Path) -> None:
 def test_several_scan_topics_must_be_chosen(tmp_path: Path) -> None:
     bag = drive(Bag()).scan(10.5, frame="base").scan(11.0, topic="/rear", frame="base")
     path = bag.ros1(tmp_path / "a.bag")
-    with pytest.raises(InputError, match="choose one with scan_topic .*: /rear, /scan"):
+    with pytest.raises(InputError, match=r"choose one with scan_topic .*: /rear, /scan"):
         open_recording(path)
     assert next(open_recording(path, scan_topic="rear").scans()).time == 11.0
     with pytest.raises(InputError, match="no laser scans on /front; there are scans on: /rear, /scan"):
@@ -246,4 +246,5 @@ def test_real_bags_open_without_options(datasets: Path, when: str, scans: int) -
     assert recording.sensor_on_base == (0.0, 0.0, 0.0)
     assert any(note.startswith("ignored map -> odom of another program") for note in recording.notes)
     first = next(recording.scans())
-    assert (len(first.ranges), first.range_max) == (726, pytest.approx(5.6))
+    assert len(first.ranges) == 726
+    assert first.range_max == pytest.approx(5.6)

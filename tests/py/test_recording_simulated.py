@@ -5,6 +5,7 @@
 from pathlib import Path
 
 import numpy as np
+
 from oort.poses import between
 from oort.recording import open_recording
 from oort.simulate import Drive
@@ -19,10 +20,8 @@ def test_bag_and_carmen_log_agree(drive: Drive, tmp_path: Path) -> None:
     for one, other in zip(bag.scans(), log.scans(), strict=True):
         assert round(one.time, 6) == round(other.time, 6)
         np.testing.assert_allclose(between(one.odometry, other.odometry), 0.0, atol=1e-5)
-        assert (one.angle_min, one.angle_increment) == (
-            np.float32(other.angle_min),
-            np.float32(other.angle_increment),
-        )
+        assert one.angle_min == float(np.float32(other.angle_min))
+        assert one.angle_increment == float(np.float32(other.angle_increment))
         seen = one.ranges < one.range_max
         np.testing.assert_array_equal(seen, other.ranges < other.range_max)
         np.testing.assert_allclose(one.ranges[seen], other.ranges[seen], atol=0.006)  # the log has two decimals

@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pytest
-from oort import InputError, Parameters, Session, State, StateError, load_map
+
+from oort import InputError, Parameters, Session, StateError, load_map
 from oort.recording import Scan
 
 
@@ -32,19 +34,23 @@ def session() -> Session:
     return Session(Parameters())
 
 
-def test_states(session: Session, tmp_path) -> None:
-    assert session.state is State.NOT_MAPPING
+def state_of(session: Session) -> str:
+    return session.state.value
+
+
+def test_states(session: Session, tmp_path: Path) -> None:
+    assert state_of(session) == "not_mapping"
     assert session.add_scan(room_scan(0, 0, 0, 0.0)) is None
     session.start(str(tmp_path / "map"))
-    assert session.state is State.MAPPING
+    assert state_of(session) == "mapping"
     drive_around(session)
     session.pause()
-    assert session.state is State.PAUSED
+    assert state_of(session) == "paused"
     assert session.add_scan(room_scan(0, 0, 0, 100.0)) is None
     session.start(str(tmp_path / "other"))
-    assert session.state is State.MAPPING
+    assert state_of(session) == "mapping"
     session.stop()
-    assert session.state is State.NOT_MAPPING
+    assert state_of(session) == "not_mapping"
     assert load_map(str(tmp_path / "other")).node_poses.shape == session.map.node_poses.shape
     with pytest.raises(StateError, match="map/clear"):
         session.start("")
@@ -87,14 +93,18 @@ def test_locations_by_namespace_and_prefix(session: Session) -> None:
     drive_around(session)
     for space, id in itertools.product(["place", "place/room", "dock"], "ab"):
         session.create_location(space, id)
-    assert session.locations.list("place") == [("place", "a"), ("place", "b")]
-    assert len(session.locations.list("place", use_as_prefix=True)) == 4
-    assert session.locations.list("nowhere") == []
+    assert session.locations.list_ids("place") == [("place", "a"), ("place", "b")]
+    assert len(session.locations.list_ids("place", use_as_prefix=True)) == 4
+    assert session.locations.list_ids("nowhere") == []
     assert session.locations.list_namespaces() == ["place", "place/room", "dock"]
     assert session.locations.delete("place", "a")
     assert not session.locations.delete("place", "a")
-    assert session.locations.clear("place", use_as_prefix=True) == [("place", "b"), ("place/room", "a"), ("place/room", "b")]
-    assert session.locations.list("", use_as_prefix=True) == [("dock", "a"), ("dock", "b")]
+    assert session.locations.clear("place", use_as_prefix=True) == [
+        ("place", "b"),
+        ("place/room", "a"),
+        ("place/room", "b"),
+    ]
+    assert session.locations.list_ids("", use_as_prefix=True) == [("dock", "a"), ("dock", "b")]
     with pytest.raises(StateError, match="graph_loc/list"):
         session.locations.locate("place", "a")
 
@@ -111,7 +121,7 @@ def test_points_share_a_node_and_keep_their_places(session: Session) -> None:
         session.locations.create_points(["spots"], [], [])
 
 
-def test_resume_adds_a_chain_and_corrects_the_start_pose(session: Session, tmp_path) -> None:
+def test_resume_adds_a_chain_and_corrects_the_start_pose(session: Session, tmp_path: Path) -> None:
     session.start(str(tmp_path / "old"))
     drive_around(session, scans=150)
     session.stop()
@@ -165,7 +175,7 @@ def test_useless_scans_are_survived(session: Session) -> None:
     assert session.mapper.sensor_pose == pytest.approx((0.59, 0.0, 1.18), abs=0.02)
 
 
-def test_same_events_same_bytes(tmp_path) -> None:
+def test_same_events_same_bytes(tmp_path: Path) -> None:
     for name in ("a", "b"):
         session = Session(Parameters())
         session.start(str(tmp_path / name))

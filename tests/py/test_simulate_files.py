@@ -12,8 +12,7 @@ from PIL import Image
 from rosbags.highlevel import AnyReader
 
 from oort.poses import between
-from oort.simulate import Drive, simulate_drive
-from oort.simulate.__main__ import main
+from oort.simulate import Drive, main, simulate_drive
 from oort.simulate.writers import write_drive
 
 ENDINGS = (".bag", ".clf", ".truth.tum", ".events.json", ".png")

@@ -33,7 +33,8 @@ def march(segments: Array, discs: Array, origin: Array, bearing: float, reach: f
 
 def test_casting_agrees_with_brute_force() -> None:
     rng = np.random.Generator(np.random.PCG64(5))
-    segments = rng.uniform(-4.0, 4.0, (60, 4))
+    middles = rng.uniform(-4.0, 4.0, (60, 2))
+    segments = np.hstack([middles + rng.uniform(-0.7, 0.7, (60, 2)), middles + rng.uniform(-0.7, 0.7, (60, 2))])
     discs = np.column_stack([rng.uniform(-3.0, 3.0, (25, 2)), rng.uniform(0.02, 0.15, 25)])
     discs = discs[np.hypot(discs[:, 0], discs[:, 1]) > 0.5]
     bearings = rng.uniform(-7.0, 7.0, 400)

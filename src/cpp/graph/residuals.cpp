@@ -53,17 +53,15 @@ ChainResidual::ChainResidual(const Pose2& T_i_j, const Eigen::Matrix3d& whitenin
 bool ChainResidual::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   const double* const i = parameters[0];
   const double* const j = parameters[1];
+  Eigen::Map<Eigen::Vector3d> r(residuals);
+  r = W_ * constraint_error({i[0], i[1], i[2]}, {j[0], j[1], j[2]}, T_i_j_);
+  if (!std::isfinite(r.squaredNorm())) return false;  // Ceres then tries a shorter step
+  if (jacobians == nullptr) return true;
+
   const double c = std::cos(i[2]);
   const double s = std::sin(i[2]);
   const double dx = j[0] - i[0];
   const double dy = j[1] - i[1];
-  const Eigen::Vector3d e(c * dx + s * dy - T_i_j_.x, -s * dx + c * dy - T_i_j_.y,
-                          wrap_angle(j[2] - i[2] - T_i_j_.theta));
-  Eigen::Map<Eigen::Vector3d> r(residuals);
-  r = W_ * e;
-  if (!r.allFinite()) return false;  // the solver then tries a shorter step
-  if (jacobians == nullptr) return true;
-
   if (jacobians[0] != nullptr) {
     Eigen::Matrix3d de_di;
     de_di << -c, -s, -s * dx + c * dy,  //

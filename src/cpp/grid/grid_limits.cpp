@@ -19,14 +19,14 @@ Eigen::Array2d cells_needed(const Eigen::AlignedBox2d& box, double resolution) {
 }  // namespace
 
 bool GridLimits::fits(const Eigen::AlignedBox2d& box, double resolution) {
+  if (!(resolution > 0.0) || !std::isfinite(resolution)) {
+    throw ParameterError("grid: resolution must be a positive number of metres, not " + std::to_string(resolution));
+  }
   if (!box.min().allFinite() || !box.max().allFinite() || box.isEmpty()) return false;
   return cells_needed(box, resolution).prod() <= kMaxCells;
 }
 
 GridLimits GridLimits::enclosing(const Eigen::AlignedBox2d& box, double resolution) {
-  if (!(resolution > 0.0) || !std::isfinite(resolution)) {
-    throw ParameterError("grid: resolution must be a positive number of metres, not " + std::to_string(resolution));
-  }
   if (!fits(box, resolution)) {
     throw InputError("grid: the points span more than a grid can hold (" +
                      std::to_string(static_cast<long>(kMaxCells)) +

@@ -22,10 +22,11 @@ struct GridLimits {
   static constexpr double kMaxCells = 67108864.0;
 
   /// The limits whose upper right corner is the box's, with as many whole cells as the box needs (at least one).
-  /// Throws ParameterError for a resolution that is not positive, InputError if fits() is false.
+  /// Throws InputError if fits() is false.
   static GridLimits enclosing(const Eigen::AlignedBox2d& box, double resolution);
 
-  /// Whether the box is finite, not empty, and needs at most kMaxCells cells.
+  /// Whether the box is finite, not empty, and needs at most kMaxCells cells. Throws ParameterError for a
+  /// resolution that is not positive.
   static bool fits(const Eigen::AlignedBox2d& box, double resolution);
 
   std::size_t cell_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }

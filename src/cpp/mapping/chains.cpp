@@ -3,7 +3,6 @@
 #include "oort/mapping/chains.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace oort {
 namespace {
@@ -18,25 +17,31 @@ bool is_rigid(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-void Chains::add(bool begins_segment, const Pose2& T_local_sensor) {
+void Chains::add(bool begins_segment, bool matched, const Pose2& T_local_sensor) {
   const std::uint64_t node = local_poses_.size();
   first_.push_back(begins_segment || node == 0 ? node : first_.back());
+  matched_.push_back(matched);
   local_poses_.push_back(T_local_sensor);
 }
 
 Chains Chains::of_map(const Map& map) {
-  std::vector<const Edge*> link_before(map.graph.nodes.size(), nullptr);
+  const std::size_t size = map.graph.nodes.size();
+  std::vector<const Edge*> step(size, nullptr);   // from the node before
+  std::vector<const Edge*> match(size, nullptr);  // from the last node that was matched
   for (const Edge& edge : map.graph.edges) {
-    if (edge.i + 1 == edge.j) link_before[edge.j] = &edge;
+    if (edge.i + 1 == edge.j) step[edge.j] = &edge;
+    if (edge.i < edge.j && edge.constraint.type == ConstraintType::kLaser) match[edge.j] = &edge;
   }
   Chains chains;
-  for (std::uint64_t node = 0; node < link_before.size(); ++node) {
-    const Edge* link = link_before[node];
-    if (link == nullptr || !is_rigid(link->constraint.covariance)) {
-      chains.add(true, Pose2{});
-    } else {
-      chains.add(false, chains.local_pose(node - 1) * link->constraint.T_i_j);
+  for (std::uint64_t node = 0; node < size; ++node) {
+    if (step[node] == nullptr && match[node] == nullptr) {
+      chains.add(true, true, Pose2{});
+      continue;
     }
+    const Edge& link = match[node] != nullptr ? *match[node] : *step[node];
+    const bool rigid = is_rigid(link.constraint.covariance) && chains.same_segment(link.i, node - 1);
+    chains.add(!rigid, !rigid || match[node] != nullptr,
+               rigid ? chains.local_pose(link.i) * link.constraint.T_i_j : Pose2{});
   }
   return chains;
 }
@@ -49,8 +54,10 @@ std::uint64_t Chains::segment_end(std::uint64_t node) const {
 std::vector<std::uint64_t> Chains::neighborhood(std::uint64_t node, std::uint64_t size) const {
   const std::uint64_t before = std::min(size / 2, node - segment_begin(node));
   const std::uint64_t end = std::min(segment_end(node), node - before + std::max<std::uint64_t>(size, 1));
-  std::vector<std::uint64_t> nodes(end - (node - before));
-  std::iota(nodes.begin(), nodes.end(), node - before);
+  std::vector<std::uint64_t> nodes;
+  for (std::uint64_t other = node - before; other < end; ++other) {
+    if (matched_[other] || other == node) nodes.push_back(other);
+  }
   return nodes;
 }
 

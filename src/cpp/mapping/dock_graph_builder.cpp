@@ -3,7 +3,6 @@
 #include "oort/mapping/dock_graph_builder.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "oort/mapping/frsm_setup.hpp"
 #include "oort/matching/frsm_adapter.hpp"
@@ -18,7 +17,7 @@ std::vector<std::uint64_t> reference_nodes(const Chains& chains, std::uint64_t d
   const bool shared = chains.same_segment(dock, query);
   std::vector<std::uint64_t> nodes;
   const auto take = [&](std::uint64_t node) {
-    if (nodes.size() < size && !(shared && node >= query_begin && node <= query)) nodes.push_back(node);
+    if (nodes.size() < size && chains.is_matched(node) && !(shared && node >= query_begin && node <= query)) nodes.push_back(node);
   };
   for (std::uint64_t node = dock; node < chains.segment_end(dock); ++node) take(node);
   for (std::uint64_t node = dock; node > chains.segment_begin(dock); --node) take(node - 1);
@@ -73,8 +72,10 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   const std::uint64_t query_size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
   const std::uint64_t first =
       std::max(chains.segment_begin(query), query + 1 - std::min<std::uint64_t>(query_size, query + 1));
-  std::vector<std::uint64_t> query_nodes(query + 1 - first);
-  std::iota(query_nodes.begin(), query_nodes.end(), first);
+  std::vector<std::uint64_t> query_nodes;
+  for (std::uint64_t node = first; node <= query; ++node) {
+    if (chains.is_matched(node) || node == query) query_nodes.push_back(node);
+  }
   const std::vector<std::uint64_t> reference = reference_nodes(
       chains, dock.node, static_cast<std::uint64_t>(parameters_.dock_submap_size), first, query);
   if (reference.empty()) {

@@ -20,6 +20,7 @@ frsm::ContourParams contour_params(const FrsmMatcherParameters& p) {
 frsm::MatcherParams matcher_params(const FrsmMatcherParameters& p) {
   frsm::MatcherParams params;
   params.theta_step = p.theta_resolution;
+  params.information_scale = p.information_scale;
   return params;
 }
 

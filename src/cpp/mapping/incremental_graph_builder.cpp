@@ -55,28 +55,23 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   tracked.information = match.information;
   tracked.covariance = match.covariance;
   tracked.hit_fraction = match.hit_fraction;
-  tracked.usable = match.usable();
+  // On the border of the search, but with most points on the map, the pose is still better than odometry's.
+  tracked.usable = match.usable() || (match.saturated && match.hit_fraction >= tracker_.params().retry_hits);
   tracked.status = frsm::to_string(match.status);
   return tracked;
 }
 
-ChainLink IncrementalGraphBuilder::link(const Pose2& T_local_previous_node, const Pose2& T_previous_node_odometry,
-                                        TrackedScan& node) {
-  ChainLink link;
-  link.T_previous_node = between(T_local_previous_node, node.T_local_sensor);
-  const Eigen::Matrix3d odometry = odometry_covariance(T_previous_node_odometry);
-  link.refusal = refusal(node, between(T_previous_node_odometry, link.T_previous_node));
-  if (link.refusal.empty()) {
-    link.covariance = match_covariance(node, T_local_previous_node.theta, odometry);
-    return link;
-  }
-  link.type = ConstraintType::kOdometry;
-  link.T_previous_node = T_previous_node_odometry;
-  link.covariance = odometry;
-  node.T_local_sensor = T_local_previous_node * T_previous_node_odometry;
-  tracker_.set_pose(to_frsm(node.T_local_sensor));
+MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
+                                        const TrackedScan& node) const {
+  MatchLink link;
+  link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
+  const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
+  link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
+  link.covariance = match_covariance(node, T_local_anchor.theta, odometry);
   return link;
 }
+
+void IncrementalGraphBuilder::correct(const Pose2& T_local_sensor) { tracker_.set_pose(to_frsm(T_local_sensor)); }
 
 std::string IncrementalGraphBuilder::refusal(const TrackedScan& node, const Pose2& T_odometry_match) const {
   const MatchFilteringParameters& filter = parameters_.frsm_matcher.match_filtering;

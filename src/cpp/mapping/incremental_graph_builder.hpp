@@ -22,12 +22,11 @@ struct TrackedScan {
   std::string status;
 };
 
-/// How a node hangs on the one before it.
-struct ChainLink {
-  Pose2 T_previous_node;
-  Eigen::Matrix3d covariance;  ///< along the axes of the previous node
-  ConstraintType type = ConstraintType::kLaser;
-  std::string refusal;  ///< why the match was refused; empty when it was not
+/// What the scan matcher says of a node, seen from the last node of its segment whose match was believed.
+struct MatchLink {
+  Pose2 T_anchor_node;
+  Eigen::Matrix3d covariance;  ///< along the axes of the anchor
+  std::string refusal;         ///< why it is not to be believed; empty when it is
 };
 
 /// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
@@ -43,14 +42,18 @@ class IncrementalGraphBuilder {
   /// (since begin(): the identity).
   TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor);
 
-  /// Links the scan just tracked, which becomes a node, to the node before. `T_previous_node_odometry` is the motion
-  /// between the two by odometry. If the match is refused the local pose is corrected to what odometry says.
-  ChainLink link(const Pose2& T_local_previous_node, const Pose2& T_previous_node_odometry, TrackedScan& node);
+  /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor.
+  MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node) const;
+
+  /// Overrules the matcher: the scan just tracked is at this pose of the local frame.
+  void correct(const Pose2& T_local_sensor);
+
+  /// Covariance of a motion by odometry alone, along the axes of the frame before.
+  Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after) const;
 
  private:
   std::string refusal(const TrackedScan& node, const Pose2& T_odometry_match) const;
-  Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;     // for the matcher
-  Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after) const;  // for a link
+  Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;
   Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry) const;
 
   IncrementalGraphBuilderParameters parameters_;

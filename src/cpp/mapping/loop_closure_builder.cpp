@@ -15,6 +15,19 @@ namespace {
 // Submaps in memory at once: about the places a robot passes between two visits to one of them.
 constexpr std::size_t kSubmapCacheSize = 64;
 
+// The rough match looks at this many points, evenly chosen; the fine one looks at all of them around the rough
+// one's pose.
+constexpr std::size_t kRoughPoints = 100;
+constexpr double kFineCells = 3.0;
+constexpr double kFineThetaSteps = 4.0;
+
+frsm::Points thinned(const frsm::Points& points) {
+  if (points.size() <= kRoughPoints) return points;
+  frsm::Points some;
+  for (std::size_t i = 0; i < kRoughPoints; ++i) some.push_back(points[i * points.size() / kRoughPoints]);
+  return some;
+}
+
 std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : b - a; }
 
 /// What a closure would move: from where the graph expects node `to` to where the match puts it.
@@ -79,7 +92,10 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
   for (const Node& node : map.graph.nodes) {
     const double distance = (node.pose.translation() - center).norm();
     const bool in_reach = search.max_candidate_distance <= 0.0 || distance <= search.max_candidate_distance;
-    if (in_reach && id_distance(node.id, query) >= static_cast<std::uint64_t>(search.closest_allowed_id_threshold_small))
+    const bool has_submap =
+        (node.id - chains.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
+    if (in_reach && has_submap &&
+        id_distance(node.id, query) >= static_cast<std::uint64_t>(search.closest_allowed_id_threshold_small))
       by_distance.emplace_back(distance, node.id);
   }
   std::sort(by_distance.begin(), by_distance.end());
@@ -125,29 +141,35 @@ std::optional<Closure> LoopClosureBuilder::match(const Map& map, const Chains& c
                                           p.search_window_xy * p.search_window_xy,
                                           p.search_window_theta * p.search_window_theta)
                               .asDiagonal()};
-  const frsm::Match rough = matcher_.match(*submap, query_points, prior.mean,
-                                           {p.search_window_xy, p.search_window_xy, p.search_window_theta}, &prior);
+  const frsm::Match rough = matcher_.match(*submap, thinned(query_points), prior.mean,
+                                         {p.search_window_xy, p.search_window_xy, p.search_window_theta}, &prior);
   if (rough.hit_fraction < p.rough_match_hitpct_threshold) {
     reason = "rough_hits";
-  } else if (rough.hit_fraction < p.fine_match_hitpct_threshold) {
-    reason = "fine_hits";
-  } else if (rough.saturated) {
-    reason = "window_border";
-  } else if (rough.ambiguity > p.max_ambiguity) {
-    reason = "ambiguous";
-  } else {
-    const Pose2 T_match = from_frsm(rough.pose);
-    const Pose2 moved = between(T_candidate_query, T_match);
-    reason = refusal(p.match_filter, rough.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
-                     id_distance(query, candidate) <
-                         static_cast<std::uint64_t>(parameters_.candidate_search.closest_allowed_id_threshold_large),
-                     std::abs(T_candidate_query.theta) >= p.match_filter.opposite_dir_threshold);
-    if (reason.empty()) {
-      return Closure{query, candidate, inverse(T_match), inverse_covariance(T_match, rough.covariance),
-                     rough.hit_fraction};
-    }
+    return std::nullopt;
   }
-  return std::nullopt;
+  if (rough.saturated) {
+    reason = "window_border";
+    return std::nullopt;
+  }
+  if (rough.ambiguity > p.max_ambiguity) {
+    reason = "ambiguous";
+    return std::nullopt;
+  }
+  const double fine_xy = kFineCells * table_.cell;
+  const frsm::Match fine = matcher_.match(*submap, query_points, rough.pose,
+                                       {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
+  if (fine.hit_fraction < p.fine_match_hitpct_threshold) {
+    reason = "fine_hits";
+    return std::nullopt;
+  }
+  const Pose2 T_match = from_frsm(fine.pose);
+  const Pose2 moved = between(T_candidate_query, T_match);
+  reason = refusal(p.match_filter, fine.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
+                   id_distance(query, candidate) <
+                       static_cast<std::uint64_t>(parameters_.candidate_search.closest_allowed_id_threshold_large),
+                   std::abs(T_candidate_query.theta) >= p.match_filter.opposite_dir_threshold);
+  if (!reason.empty()) return std::nullopt;
+  return Closure{query, candidate, inverse(T_match), inverse_covariance(T_match, fine.covariance), fine.hit_fraction};
 }
 
 }  // namespace oort

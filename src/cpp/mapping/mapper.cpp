@@ -147,8 +147,9 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
   node.id = map_.graph.nodes.size();
   scan.cloud.id = node.id;
   const bool begins_segment = next_link_ != NextLink::kChain;
+  bool believed = true;  // the first scan of a segment is where its local frame says
   if (next_link_ == NextLink::kChain) {
-    link_to_chain(scan, between(T_odom_sensor_node_, scan.T_odom_sensor), node, scan.tracked);
+    believed = link_to_chain(scan, node);
   } else {
     const FrsmMatcherParameters& p = parameters_.incremental_graph_builder.frsm_matcher;
     const double scale = p.scanmatch_cov_scale;
@@ -168,7 +169,8 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
     }
   }
   map_.graph.nodes.push_back(node);
-  chains_.add(begins_segment, scan.tracked.T_local_sensor);
+  chains_.add(begins_segment, believed, scan.tracked.T_local_sensor);
+  if (believed) anchor_ = {node.id, scan.T_odom_sensor};
   map_.clouds.push_back(scan.cloud);
   ++statistics_.nodes;
   scan.is_node = true;
@@ -179,19 +181,34 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
   return node.id;
 }
 
-void Mapper::link_to_chain(const LastScan& scan, const Pose2& T_previous_node_odometry, Node& node,
-                           TrackedScan& tracked) {
+bool Mapper::link_to_chain(LastScan& scan, Node& node) {
   const Node& previous = map_.graph.nodes.back();
-  const ChainLink link = incremental_.link(chains_.local_pose(previous.id), T_previous_node_odometry, tracked);
-  if (!link.refusal.empty()) {
-    ++statistics_.odometry_links;
-    ++statistics_.match_refusals[link.refusal];
+  const Pose2 T_previous_node = between(T_odom_sensor_node_, scan.T_odom_sensor);
+  const MatchLink match =
+      incremental_.link(chains_.local_pose(anchor_.node), between(anchor_.T_odom_sensor, scan.T_odom_sensor), scan.tracked);
+  const bool believed = match.refusal.empty();
+  const auto add_edge = [&](std::uint64_t from, const Pose2& pose, const Eigen::Matrix3d& covariance,
+                            ConstraintType type) {
+    map_.graph.edges.push_back({next_edge_id_++, from, node.id, {scan.cloud.time, node.id, pose, covariance, type}});
+  };
+  // What is matched after a gap says where the node is from before the gap, not from the nodes within.
+  if (!believed || anchor_.node != previous.id) {
+    add_edge(previous.id, T_previous_node, incremental_.odometry_covariance(T_previous_node), ConstraintType::kOdometry);
   }
-  node.pose = previous.pose * link.T_previous_node;
-  map_.graph.edges.push_back({next_edge_id_++, previous.id, node.id,
-                              {scan.cloud.time, node.id, link.T_previous_node, link.covariance, link.type}});
-  map_.incremental_results.push_back({node.id, previous.id, tracked.T_local_sensor, tracked.covariance,
-                                      link.T_previous_node, tracked.hit_fraction});
+  if (believed) {
+    add_edge(anchor_.node, match.T_anchor_node, match.covariance, ConstraintType::kLaser);
+    node.pose = map_.graph.nodes[anchor_.node].pose * match.T_anchor_node;
+  } else {
+    ++statistics_.odometry_links;
+    ++statistics_.match_refusals[match.refusal];
+    node.pose = previous.pose * T_previous_node;
+    scan.tracked.T_local_sensor = chains_.local_pose(previous.id) * T_previous_node;
+    incremental_.correct(scan.tracked.T_local_sensor);
+  }
+  map_.incremental_results.push_back({node.id, previous.id, scan.tracked.T_local_sensor, scan.tracked.covariance,
+                                      between(chains_.local_pose(previous.id), scan.tracked.T_local_sensor),
+                                      scan.tracked.hit_fraction});
+  return believed;
 }
 
 void Mapper::link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,

@@ -90,12 +90,17 @@ class Mapper {
   };
   /// How the next node hangs on what is there.
   enum class NextLink { kNone, kChain, kPaused, kSession };
+  /// The newest node whose match was believed.
+  struct Anchor {
+    std::uint64_t node = 0;
+    Pose2 T_odom_sensor;
+  };
 
   bool is_due(const Pose2& T_odom_base) const;
   void track(LastScan& scan);
   void carry(LastScan& scan) const;
   std::uint64_t make_node(LastScan& scan);
-  void link_to_chain(const LastScan& scan, const Pose2& T_previous_node_odometry, Node& node, TrackedScan& tracked);
+  bool link_to_chain(LastScan& scan, Node& node);
   void link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,
                     double time);
   void close_loops(std::uint64_t node);
@@ -119,7 +124,8 @@ class Mapper {
   std::optional<LastScan> last_scan_;
   Pose2 T_odom_sensor_tracked_;   // when the matcher was last asked,
   Pose2 T_local_sensor_tracked_;  // and what it said
-  Pose2 T_odom_sensor_node_;      // at the newest node
+  Anchor anchor_;
+  Pose2 T_odom_sensor_node_;  // at the newest node
   Pose2 T_odom_base_node_;
   std::uint64_t next_edge_id_ = 0;
   std::uint64_t pending_closures_ = 0;  // since the last solve

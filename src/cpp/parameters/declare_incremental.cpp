@@ -49,6 +49,9 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
   v(p.max_point_range, "max_point_range", {25.0, "m", {0.5, 100.0}},
     "Points farther away are not drawn into the matcher's tables.")
       .own(25.0);
+  v(p.information_scale, "information_scale", {1.0, "", {0.001, 1000.0}},
+    "Log-likelihood of one point that lies on the map: how much a match counts against what odometry expects.")
+      .own(1.0);
 }
 
 void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {

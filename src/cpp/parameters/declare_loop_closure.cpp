@@ -20,6 +20,9 @@ void declare_candidate_search(const Section& v, CandidateSearchParameters& p) {
   v(p.max_candidate_distance, "max_candidate_distance", {4.0, "m", {0.0, 1000.0}},
     "Nodes farther away are no candidates; 0: no limit.")
       .own(0.0, "Scans of nodes far apart overlap little: they cost time and close no loop.");
+  v(p.candidate_stride, "candidate_stride", {4, "nodes", {1, 1000}},
+    "Every how many-th node of a chain may be a candidate: fewer submaps are drawn.")
+      .own(1, "The neighbourhood of a node and that of the next are nearly the same submap.");
 }
 
 void declare_match_filter(const Section& v, MatchFilterParameters& p) {

@@ -85,6 +85,7 @@ struct FrsmMatcherParameters {
   double key_scan_angle;
   std::string line_profile;
   double max_point_range;
+  double information_scale;
   double scanmatch_cov_scale;
   double inflate_scanmatch_cov_scale;
   double resume_scanmatch_cov_scale;
@@ -160,6 +161,7 @@ struct CandidateSearchParameters {
   int closest_allowed_id_threshold_small;
   double max_dist_allowed_threshold;
   double max_candidate_distance;
+  int candidate_stride;
 };
 
 /// Decides whether a loop closure's match is believed.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/grid/range_data.hpp"
 #include "oort/render/speckle.hpp"
 
 namespace oort {
@@ -119,8 +120,8 @@ RenderedMap render(const std::vector<Node>& nodes, const std::vector<PointCloud>
     const OccupancyGrid empty{parameters.probability_grid.resolution, 0.0, 0.0, 0, 0, {}};
     return {empty, empty};
   }
-  ProbabilityGrid grid(limits_of(nodes, clouds, parameters));
   const RangeDataInserter inserter(parameters.probability_grid);
+  ProbabilityGrid grid(limits_of(nodes, clouds, parameters));
   for (std::size_t k = 0; k < nodes.size(); ++k) inserter.insert(clouds[k], nodes[k].pose, grid);
   OccupancyGrid map = threshold(grid, parameters);
   clear_footprints(nodes, parameters.robot_radius, grid.limits(), map);

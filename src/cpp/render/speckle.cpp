@@ -39,27 +39,33 @@ cv::Mat walls_of(const OccupancyGrid& map, int least) {
 }
 
 void median(OccupancyGrid& map, const MedianParameters& parameters) {
-  if (parameters.kernel_size == 1) return;  // the median of one cell is itself
-  constexpr std::uint8_t kFreeRank = 0, kOccupiedRank = 1, kUnknownRank = 2;
-  cv::Mat ranks(map.height, map.width, CV_8U, cv::Scalar(kUnknownRank));
-  ranks.setTo(kFreeRank, layer_of(map, OccupancyGrid::kFree));
-  ranks.setTo(kOccupiedRank, layer_of(map, OccupancyGrid::kOccupied));
+  // Of two values the median is the one that occurs more often: the sign of a sum. Occupied cells add nothing to it.
+  cv::Mat votes(map.height, map.width, CV_16S, cv::Scalar(-1));
+  votes.setTo(1, layer_of(map, OccupancyGrid::kFree));
+  votes.setTo(0, layer_of(map, OccupancyGrid::kOccupied));
   const cv::Mat walls = walls_of(map, parameters.kernel_size);
   for (int i = 0; i < parameters.iter; ++i) {
-    cv::medianBlur(ranks, ranks, parameters.kernel_size);
-    ranks.setTo(kOccupiedRank, walls);
+    cv::Mat sums;
+    cv::boxFilter(votes, sums, CV_16S, {parameters.kernel_size, parameters.kernel_size}, {-1, -1}, false,
+                  cv::BORDER_CONSTANT);
+    votes.setTo(1, sums > 0);
+    votes.setTo(-1, sums < 0);
+    votes.setTo(0, walls);
   }
-  constexpr std::int8_t kStates[] = {OccupancyGrid::kFree, OccupancyGrid::kOccupied, OccupancyGrid::kUnknown};
-  std::transform(ranks.begin<std::uint8_t>(), ranks.end<std::uint8_t>(), map.cells.begin(),
-                 [&](std::uint8_t rank) { return kStates[rank]; });
+  std::transform(votes.begin<std::int16_t>(), votes.end<std::int16_t>(), map.cells.begin(), [](std::int16_t vote) {
+    if (vote == 0) return OccupancyGrid::kOccupied;
+    return vote > 0 ? OccupancyGrid::kFree : OccupancyGrid::kUnknown;
+  });
 }
 
+/// Closes a layer. What lies outside the map counts as not set, or walls near its border would grow to it.
 cv::Mat closed(const cv::Mat& layer, int iterations) {
   if (iterations == 0) return layer;
-  cv::Mat result;
-  cv::morphologyEx(layer, result, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}), {-1, -1},
+  cv::Mat padded, result;
+  cv::copyMakeBorder(layer, padded, iterations, iterations, iterations, iterations, cv::BORDER_CONSTANT);
+  cv::morphologyEx(padded, result, cv::MORPH_CLOSE, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}), {-1, -1},
                    iterations);
-  return result;
+  return result(cv::Rect(iterations, iterations, layer.cols, layer.rows)).clone();
 }
 
 void morphological(OccupancyGrid& map, const MorphologicalParameters& parameters) {

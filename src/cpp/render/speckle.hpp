@@ -8,9 +8,10 @@ namespace oort {
 
 /// The map without speckle noise: small unknown spots within free space become free, stray occupied cells go.
 ///
-/// Median: median.iter passes of a median filter over the order free < occupied < unknown. A plain median would
-/// eat walls, which short-range sensors draw one cell thick; so occupied cells that hang together (8-connected) in
-/// groups of at least median.kernel_size cells stay as they are.
+/// Median: median.iter passes of a median filter over free and unknown cells. A plain median would eat walls, which
+/// short-range sensors draw one cell thick. So occupied cells take no part in it: those that hang together
+/// (8-connected) in groups of at least median.kernel_size cells stay, others become what is around them, and no cell
+/// becomes occupied.
 ///
 /// Morphological: the free and the occupied cells are closed (dilated, then eroded, by a 3x3 square, as many times as
 /// their number of iterations) each on a layer of its own; then free is painted first, occupied over it, and a cell on

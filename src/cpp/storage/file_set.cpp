@@ -41,7 +41,13 @@ FileSet::FileSet(const std::string& base, std::function<void()> after_step)
       directory_(folder_of(base), std::move(after_step)) {}
 
 SetContent FileSet::read() {
-  std::optional<Whole> whole = find_whole();
+  std::optional<Whole> whole;
+  try {
+    whole = find_whole(true);
+  } catch (const MapFileError&) {
+    // Something odd under the new names must not hide what is under the old ones.
+  }
+  if (!whole) whole = find_whole(false);
   if (!whole) throw MapFileError(why_not_whole());
   try {
     finish_renaming(*whole);

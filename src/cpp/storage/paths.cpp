@@ -22,7 +22,7 @@ std::string without(const std::string& text, std::string_view suffix) {
 /// Follows links of the folder, and of the base or its map file, which may point to another name. `hops` ends a circle.
 std::string follow_links(const std::string& base, int hops) {
   const fs::path path = base;
-  const std::string here = (fs::weakly_canonical(path.parent_path()) / path.filename()).string();
+  std::string here = (fs::weakly_canonical(path.parent_path()) / path.filename()).string();
   if (hops == 0) return here;
   for (const std::string suffix : {kMapSuffix, ""}) {
     const std::string link = here + suffix;

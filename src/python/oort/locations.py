@@ -65,7 +65,7 @@ class Locations:
                 self._mapper.create_location(request.name_space, request.id, self._mapper.sensor_pose)
             self._waiting.clear()
 
-    def list(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
+    def list_ids(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
         """All (namespace, id) of a namespace, or of all that begin with it."""
         return [
             (space, id)
@@ -80,7 +80,9 @@ class Locations:
     def locate(self, name_space: str, id: str) -> Pose:
         """Where a place is now, in the map frame. Raises StateError if it is not known (yet)."""
         if _Request(name_space, id) in self._waiting:
-            raise StateError(f"location {name_space!r}/{id!r} has no pose yet: mapping has not reached it; ask again later")
+            raise StateError(
+                f"location {name_space!r}/{id!r} has no pose yet: mapping has not reached it; ask again later"
+            )
         pose = self._mapper.locate(name_space, id)
         if pose is None:
             raise StateError(f"no location {name_space!r}/{id!r}; graph_loc/list shows the known ones")
@@ -94,8 +96,8 @@ class Locations:
         return self._mapper.delete_location(name_space, id) or was_waiting
 
     def clear(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
-        """Removes the places that list() would give, and returns them."""
-        doomed = self.list(name_space, use_as_prefix)
+        """Removes the places that list_ids() would give, and returns them."""
+        doomed = self.list_ids(name_space, use_as_prefix)
         for space, id in doomed:
             self._mapper.delete_location(space, id)
         return doomed

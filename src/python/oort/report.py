@@ -68,7 +68,10 @@ def format_table(report: Mapping[str, Any]) -> str:
     per_scan = timings["ms_per_scan"]
     rows = [
         ("scans", f"{report['scans']} ({report['scans_matched']} matched, {report['scans_too_small']} too small)"),
-        ("nodes", f"{report['nodes']} ({report['odometry_links']} linked by odometry{_reasons(report['match_refusals'])})"),
+        (
+            "nodes",
+            f"{report['nodes']} ({report['odometry_links']} linked by odometry{_reasons(report['match_refusals'])})",
+        ),
         ("loop closures", _closures(report["loops"])),
         ("dock closures", _closures(report["docks"])),
         ("switched off", f"{report['map']['switched_off']} of {report['map']['switchable_edges']}"),

@@ -36,7 +36,7 @@ class Drive:
 def write_results(drive: Drive, out: Path) -> dict[str, Any]:
     """Writes trajectory.tum, map.pgm and .yaml, map.png, graph.g2o and report.json; returns the report."""
     map_ = drive.session.map
-    base_poses = drive.recorder.base_poses(map_.node_poses)
+    base_poses = drive.recorder.base_poses(map_)
     grid = render_map(map_, drive.parameters)[0]
     write_tum(out / "trajectory.tum", drive.recorder.stamps, base_poses)
     write_g2o(out / "graph.g2o", _pose_graph(map_))
@@ -90,9 +90,7 @@ def _pose_graph(map_: Map) -> PoseGraph:
     return PoseGraph(
         ids=map_.node_ids.astype(np.int64),
         poses=map_.node_poses,
-        edges=np.concatenate(
-            [np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64) for edges in (chain, loops)]
-        ),
+        edges=np.concatenate([np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64) for edges in (chain, loops)]),
         measurements=np.concatenate([chain["pose"], loops["pose"]]),
         covariances=np.concatenate([chain["covariance"], loops["covariance"] / weight]),
     )

@@ -107,7 +107,9 @@ class Session:
             self.resume_from_paused()
         elif self._state is State.NOT_MAPPING:
             if self._mapper.num_nodes > 0:
-                raise StateError("map/start: there is a map already; call map/clear first, or map/resume to go on with it")
+                raise StateError(
+                    "map/start: there is a map already; call map/clear first, or map/resume to go on with it"
+                )
             self._state = State.MAPPING
         self._path = path
 

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where every scan of a drive was, at the map's final solution."""
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from oort._core import ScanResult
+from oort._core import Map, ScanResult
 from oort.poses import between, compose
 from oort.recording import Pose
 
@@ -40,40 +41,29 @@ class TrajectoryRecorder:
         self._relative.append(result.T_node_sensor if result is not None and known else (0.0, 0.0, 0.0))
         self._made_node.append(result is not None and result.outcome == "node")
 
-    def base_poses(self, node_poses: NDArray[np.float64]) -> NDArray[np.float64]:
-        """T_map_base of every scan, (n, 3), in their order, given T_map_sensor of every node, (m, 3).
+    def base_poses(self, map_: Map) -> NDArray[np.float64]:
+        """T_map_base of every scan, (n, 3), in their order, at the map's solution.
 
-        A scan between two nodes of a chain is carried by both: what the solution moved the next node by, relative to
-        where the scan matcher saw it, is given to the scans in proportion to their place between the two. Scans that no
-        node carries follow odometry from the scan before (the first ones: back from the first scan that has a node).
+        A scan between two nodes of a chain is carried by both: how far the solution moved the next node from where the
+        scan matcher had seen it is given to the scans in proportion to their place between the two. Scans that no node
+        carries follow odometry from the scan before (the first ones: back from the first scan that has a node).
         """
         nodes = np.array(self._nodes, dtype=np.int64)
-        if len(node_poses) == 0 or not (nodes != _NO_NODE).any():
+        if len(map_) == 0 or not (nodes != _NO_NODE).any():
             return np.array(self._odometry, dtype=np.float64).reshape(-1, 3)
-        sensor = compose(node_poses[np.maximum(nodes, 0)], np.array(self._relative).reshape(-1, 3))
-        sensor = self._spread(sensor, nodes, node_poses)
-        base = compose(sensor, between(self._sensor_on_base, np.zeros(3)))
+        carrier = np.maximum(nodes, 0)
+        correction = _corrections(map_)[carrier] * self._progress(nodes)[:, None]
+        relative = compose(np.array(self._relative).reshape(-1, 3), correction)
+        base = compose(compose(map_.node_poses[carrier], relative), between(self._sensor_on_base, np.zeros(3)))
         return self._carry(base, nodes)
 
-    def _spread(
-        self, sensor: NDArray[np.float64], nodes: NDArray[np.int64], node_poses: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _progress(self, nodes: NDArray[np.int64]) -> NDArray[np.float64]:
+        """How far each scan is on the way from the scan of its node to that of the next, in [0, 1)."""
+        progress = np.zeros(len(nodes))
         made = np.flatnonzero(self._made_node)
-        out = sensor.copy()
-        for before, after in zip(made[:-1], made[1:], strict=True):
-            last = after - 1  # the last scan that is carried by the node before
-            if nodes[after] != nodes[before] + 1 or (nodes[before : after] != nodes[before]).any():
-                continue
-            step = compose(sensor[last], self._motion(last, after))
-            correction = between(step, node_poses[nodes[after]])
-            fraction = np.arange(1, after - before)[:, None] / (after - before)
-            out[before + 1 : after] = compose(sensor[before + 1 : after], correction * fraction)
-        return out
-
-    def _motion(self, a: int, b: int) -> NDArray[np.float64]:
-        """The sensor's motion between two scans by odometry."""
-        odometry = compose(np.array([self._odometry[a], self._odometry[b]]), self._sensor_on_base)
-        return between(odometry[0], odometry[1])
+        for before, after in itertools.pairwise(made):
+            progress[before:after] = np.arange(after - before) / (after - before)
+        return progress
 
     def _carry(self, base: NDArray[np.float64], nodes: NDArray[np.int64]) -> NDArray[np.float64]:
         odometry = np.array(self._odometry)
@@ -84,3 +74,13 @@ class TrajectoryRecorder:
             else:
                 base[i] = compose(base[anchor], between(odometry[anchor], odometry[i]))
         return base
+
+
+def _corrections(map_: Map) -> NDArray[np.float64]:
+    """(m, 3): by how much the solution moved the node after each node from where the scan matcher saw it."""
+    poses, results = map_.node_poses, map_.incremental_results
+    corrections = np.zeros_like(poses)
+    linked = results["target"] + 1 == results["id"]
+    target, id = results["target"][linked], results["id"][linked]
+    corrections[target] = between(compose(poses[target], results["pose"][linked]), poses[id])
+    return corrections

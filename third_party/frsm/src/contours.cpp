@@ -125,7 +125,9 @@ ContourParams ContourParams::urg() {
   return params;
 }
 
-ContourParams ContourParams::sick() { return {}; }
+ContourParams ContourParams::sick() {
+  return {};
+}
 
 void ContourParams::validate() const {
   check(max_adjacent_distance > 0.0, "ContourParams.max_adjacent_distance", "must be above 0 m");

@@ -16,7 +16,10 @@
 namespace frsm {
 namespace {
 
-constexpr double kPolishReach = 1.5;  // cells and heading steps about the best pose of the lattice
+constexpr double kPolishReach = 1.5;   // cells and heading steps about the best pose of the lattice
+constexpr double kSeparation = 0.3;    // [m] and [rad]; nearer, a second peak is the same one
+constexpr double kWidestWindow = 1e6;  // [cells] and [steps] each way
+constexpr double kFarthest = 1e6;      // [m]; keeps cell indices far from the limits of int
 
 // Points that fall in one cell are not independent.
 std::size_t independent_points(const Points& body, double cell) {
@@ -28,10 +31,33 @@ std::size_t independent_points(const Points& body, double cell) {
 }
 
 // The smallest number of steps that reach the half width.
-int steps(double half_width, double step) { return static_cast<int>(std::ceil(half_width / step - 1e-9)); }
+int steps(double half_width, double step) {
+  return static_cast<int>(std::ceil(half_width / step - 1e-9));
+}
 
 Lattice make_lattice(const Pose& guess, const Window& window, double cell, double theta_step) {
   return {guess, cell, theta_step, steps(window.x, cell), steps(window.y, cell), steps(window.theta, theta_step)};
+}
+
+std::optional<Candidate> find_best(const Search& search, int exhaustive_limit) {
+  const long shifts = (2L * search.lattice.nx + 1) * (2L * search.lattice.ny + 1);
+  return shifts <= exhaustive_limit ? search_all(search) : search_bounded(search);
+}
+
+// Score of the best pose well apart from the best one, as a share of its score; without regard to the prior.
+double second_peak(const Search& search, const Candidate& best, const MatcherParams& params) {
+  const Lattice& lattice = search.lattice;
+  const int cells = steps(kSeparation, lattice.cell);
+  const int turns = steps(kSeparation, lattice.theta_step);
+  Search apart{search.table,
+               search.body,
+               lattice,
+               Objective(search.objective.weight(), search.body.size(), nullptr),
+               Exclusion{best, cells, cells, turns},
+               0.0};
+  apart.floor = apart.objective.evidence(params.ambiguity_floor * best.sum);
+  const auto second = find_best(apart, params.exhaustive_limit);
+  return second ? static_cast<double>(second->sum) / best.sum : 0.0;
 }
 
 bool on_border(const Lattice& lattice, const Candidate& c) {
@@ -39,10 +65,13 @@ bool on_border(const Lattice& lattice, const Candidate& c) {
   return at_end(c.ix, lattice.nx) || at_end(c.iy, lattice.ny) || at_end(c.it, lattice.nt);
 }
 
-void check_input(const Pose& guess, const Window& window, const Prior* prior) {
+void check_input(const Pose& guess, const Window& window, double cell, double theta_step, const Prior* prior) {
   check(is_finite(guess), "the guess", "is not finite");
+  check(std::abs(guess.x) <= kFarthest && std::abs(guess.y) <= kFarthest, "the guess",
+        "is more than 1000 km from the origin");
   check(window.x >= 0.0 && window.y >= 0.0 && window.theta >= 0.0, "the window", "has a negative half width");
-  check(std::isfinite(window.x + window.y + window.theta), "the window", "is not finite");
+  check(std::max(window.x, window.y) <= kWidestWindow * cell && window.theta <= kWidestWindow * theta_step,
+        "the window", "is wider than a million steps");
   if (prior == nullptr) return;
   check(is_finite(prior->mean), "the prior's mean", "is not finite");
   check(prior->covariance.allFinite() && Eigen::LLT<Eigen::Matrix3d>(prior->covariance).info() == Eigen::Success,
@@ -50,8 +79,8 @@ void check_input(const Pose& guess, const Window& window, const Prior* prior) {
 }
 
 // What is known when the scan tells nothing.
-Match unmatched(Status status, const Pose& guess, const Window& window, const Prior* prior, double cell, double theta_step,
-                std::size_t points) {
+Match unmatched(Status status, const Pose& guess, const Window& window, const Prior* prior, double cell,
+                double theta_step, std::size_t points) {
   Match match;
   match.status = status;
   match.pose = guess;
@@ -106,19 +135,22 @@ void MatcherParams::validate() const {
   check(hit_value >= 1 && hit_value <= 255, "MatcherParams.hit_value", "must be 1 to 255");
   check(min_points >= 1, "MatcherParams.min_points", "must be at least 1");
   check(min_hit_fraction >= 0.0 && min_hit_fraction <= 1.0, "MatcherParams.min_hit_fraction", "must be 0 to 1");
-  check(information_scale > 0.0 && std::isfinite(information_scale), "MatcherParams.information_scale", "must be above 0");
+  check(information_scale > 0.0 && std::isfinite(information_scale), "MatcherParams.information_scale",
+        "must be above 0");
   check(min_curvature >= 0.0 && min_curvature <= 1.0, "MatcherParams.min_curvature", "must be 0 to 1");
   check(ambiguity_floor > 0.0, "MatcherParams.ambiguity_floor", "must be above 0");
   check(exhaustive_limit >= 1, "MatcherParams.exhaustive_limit", "must be at least 1");
 }
 
-Matcher::Matcher(const MatcherParams& params) : params_(params) { params_.validate(); }
+Matcher::Matcher(const MatcherParams& params) : params_(params) {
+  params_.validate();
+}
 
 Match Matcher::match(const Table& table, const Points& body, const Pose& guess, const Window& window,
                      const Prior* prior) const {
-  check_input(guess, window, prior);
-  const Points points = drop_invalid(body);
   const double cell = table.params().cell;
+  check_input(guess, window, cell, params_.theta_step, prior);
+  const Points points = drop_invalid(body);
   const auto give_up = [&](Status status) {
     return unmatched(status, guess, window, prior, cell, params_.theta_step, points.size());
   };
@@ -127,19 +159,25 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
   if (table.empty()) return give_up(Status::kNoOverlap);
 
   const double weight = params_.information_scale * static_cast<double>(independent_points(points, cell));
-  const Search search{table, points, make_lattice(guess, window, cell, params_.theta_step),
-                      Objective(weight, points.size(), prior), std::nullopt};
-  const Candidate best = *search_all(search);
+  const Search search{table,
+                      points,
+                      make_lattice(guess, window, cell, params_.theta_step),
+                      Objective(weight, points.size(), prior),
+                      std::nullopt,
+                      -std::numeric_limits<double>::infinity()};
+  const Candidate best = *find_best(search, params_.exhaustive_limit);
   if (best.sum == 0) return give_up(Status::kNoOverlap);
 
   Match match;
   match.saturated = on_border(search.lattice, best);
+  if (params_.ambiguity_floor < 1.0) match.ambiguity = second_peak(search, best, params_);
   match.pose = polish(table, points, search.objective, search.lattice.at(best.it, best.ix, best.iy),
                       {kPolishReach * cell, kPolishReach * cell, kPolishReach * params_.theta_step});
-  count_hits(table, points, params_.hit_value, &match);
   const Shape shape = fit_shape(table, points, match.pose, weight, params_.min_curvature, window);
+  match.pose = slide_to_prior(match.pose, shape, search.objective, guess);
+  count_hits(table, points, params_.hit_value, &match);
   match.information = shape.information;
-  match.degenerate = shape.degenerate;
+  match.degenerate = shape.free_directions > 0;
   match.covariance =
       (shape.information + (prior != nullptr ? search.objective.information() : shape.window_information)).inverse();
   match.status = judge(match, params_);

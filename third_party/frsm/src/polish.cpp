@@ -13,9 +13,9 @@ constexpr int kMaxIterations = 12;
 constexpr double kMinResidual2 = 0.05;  // of 1 - M: keeps points on the line from outweighing all others
 
 struct Linearisation {
-  double value = 0.0;                                   // of the objective
-  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();    // of its negative, Gauss-Newton
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();   // of the objective
+  double value = 0.0;                                  // of the objective
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();   // of its negative, Gauss-Newton
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // of the objective
 };
 
 Linearisation linearise(const Table& table, const Points& body, const Objective& objective, const Pose& pose) {
@@ -70,7 +70,7 @@ Pose polish(const Table& table, const Points& body, const Objective& objective, 
       pose = next;
       here = there;
       damping *= 0.2;
-      if (gain < 1e-6 * objective.weight()) break;
+      if (gain < 1e-5 * objective.weight()) break;
     } else {
       damping = std::max(damping * 8.0, 1e-2);
       if (damping > 1e3) break;

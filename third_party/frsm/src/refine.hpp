@@ -12,19 +12,24 @@ using Bounds = Window;
 
 /// Climbs from a pose of the lattice to the maximum of  weight * mean M(T p) + log prior,  M interpolated: Levenberg's
 /// method on the residuals sqrt(1 - M). Returns the start if nothing within the bounds is better.
-Pose polish(const Table& table, const Points& body, const Objective& objective, const Pose& start, const Bounds& bounds);
+Pose polish(const Table& table, const Points& body, const Objective& objective, const Pose& start,
+            const Bounds& bounds);
 
 /// What the score's shape about its peak tells of the pose. Both matrices along the table's axes.
 struct Shape {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< 0 along degenerate directions
   /// Along degenerate directions the information of a standard deviation as wide as the window, 0 elsewhere.
   Eigen::Matrix3d window_information = Eigen::Matrix3d::Zero();
-  bool degenerate = false;
+  Eigen::Matrix3d free = Eigen::Matrix3d::Zero();  ///< the first free_directions columns: motions that no point resists
+  int free_directions = 0;
 };
 
 /// Fits a quadratic to the scores of 5 x 5 x 5 poses about the peak, two cells each way and as far by turning.
 /// Directions whose curvature is below `min_curvature` of what a wall seen by every point has are degenerate.
 Shape fit_shape(const Table& table, const Points& body, const Pose& peak, double weight, double min_curvature,
                 const Window& window);
+
+/// Moves a pose along its free directions to where the prior is best; without one, nearest to the guess.
+Pose slide_to_prior(const Pose& pose, const Shape& shape, const Objective& objective, const Pose& guess);
 
 }  // namespace frsm

@@ -10,15 +10,6 @@
 #include "slice.hpp"
 
 namespace frsm {
-namespace {
-
-// Squared distance from the guess in units of the window.
-double spread(const Lattice& lattice, const Candidate& c) {
-  const auto part = [](int i, int n) { return n > 0 ? static_cast<double>(i) * i / (static_cast<double>(n) * n) : 0.0; };
-  return part(c.it, lattice.nt) + part(c.ix, lattice.nx) + part(c.iy, lattice.ny);
-}
-
-}  // namespace
 
 Objective::Objective(double weight, std::size_t points, const Prior* prior)
     : weight_(weight), per_sum_(weight / (255.0 * static_cast<double>(points))) {
@@ -45,9 +36,18 @@ bool Exclusion::contains(int it, int ix, int iy) const {
   return std::abs(it - centre.it) <= nt && std::abs(ix - centre.ix) <= nx && std::abs(iy - centre.iy) <= ny;
 }
 
+double spread(const Lattice& lattice, int it, int ix, int iy) {
+  const auto part = [](int i, int n) {
+    return n > 0 ? static_cast<double>(i) * i / (static_cast<double>(n) * n) : 0.0;
+  };
+  return part(it, lattice.nt) + part(ix, lattice.nx) + part(iy, lattice.ny);
+}
+
 bool Search::better(const Candidate& a, const Candidate& b) const {
   if (a.value != b.value) return a.value > b.value;
-  return std::make_tuple(spread(lattice, a), a.it, a.iy, a.ix) < std::make_tuple(spread(lattice, b), b.it, b.iy, b.ix);
+  const double spread_a = spread(lattice, a.it, a.ix, a.iy);
+  const double spread_b = spread(lattice, b.it, b.ix, b.iy);
+  return std::tie(spread_a, a.it, a.iy, a.ix) < std::tie(spread_b, b.it, b.iy, b.ix);
 }
 
 std::optional<Candidate> search_all(const Search& search) {
@@ -63,7 +63,10 @@ std::optional<Candidate> search_all(const Search& search) {
       for (int ix = -lattice.nx; ix <= lattice.nx; ++ix) {
         if (search.exclusion && search.exclusion->contains(it, ix, iy)) continue;
         Candidate candidate{it, ix, iy, slice.sum(ix, iy), 0.0};
-        candidate.value = search.objective.evidence(candidate.sum) + search.objective.prior(lattice.at(it, ix, iy));
+        candidate.value = search.objective.evidence(candidate.sum);
+        if (candidate.value < (best ? best->value : search.floor)) continue;  // the prior can only lower it
+        candidate.value += search.objective.prior(lattice.at(it, ix, iy));
+        if (candidate.value < search.floor) continue;
         if (!best || search.better(candidate, *best)) best = candidate;
       }
     }

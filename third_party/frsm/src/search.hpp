@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -60,6 +61,9 @@ struct Exclusion {
   bool contains(int it, int ix, int iy) const;
 };
 
+/// Squared distance of a place of the lattice from the guess, in units of the window.
+double spread(const Lattice& lattice, int it, int ix, int iy);
+
 /// What is searched.
 struct Search {
   const Table& table;
@@ -67,12 +71,16 @@ struct Search {
   Lattice lattice;
   Objective objective;
   std::optional<Exclusion> exclusion;
+  double floor = -std::numeric_limits<double>::infinity();  // candidates of less value do not count
 
   /// Strict order of candidates: by value, then nearest to the guess, then by index; never equal for different poses.
   bool better(const Candidate& a, const Candidate& b) const;
 };
 
-/// The best candidate, by trying all. Nothing if all are excluded.
+/// The best candidate, by trying all. Nothing if none counts.
 std::optional<Candidate> search_all(const Search& search);
+
+/// The same candidate, by branch and bound: for wide windows.
+std::optional<Candidate> search_bounded(const Search& search);
 
 }  // namespace frsm

@@ -9,7 +9,7 @@
 namespace frsm {
 namespace {
 
-constexpr int kVector = 16;         // columns added at once: one SSE2 or NEON register of bytes
+constexpr int kVector = 16;          // columns added at once: one SSE2 or NEON register of bytes
 constexpr std::size_t kBatch = 256;  // 256 * 255 still fits 16 bits
 
 // Adds, for one row of 16 neighbouring shifts, the bytes under up to 256 points.

@@ -5,28 +5,29 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
+#include "brush.hpp"
 #include "check.hpp"
 #include "pyramid.hpp"
+#include "rounding.hpp"
 
 namespace frsm {
 namespace {
 
-constexpr int kMargin = 32;                             // zero cells around what is drawn: windows need no clipping there
-constexpr int kChunk = 64;                              // the rectangle grows in steps of this many cells
+constexpr int kMargin = 32;  // zero cells around what is drawn: windows need no clipping there
+constexpr int kChunk = 64;   // the rectangle grows in steps of this many cells
 constexpr std::size_t kMaxCells = std::size_t{1} << 28;
-constexpr std::size_t kKernelEntries = 8192;            // the whole kernel stays in the first-level cache
+constexpr int kKernelEntries = 8192;  // the whole kernel stays in the first-level cache
 
-int floor_to_chunk(int i) { return i - ((i % kChunk) + kChunk) % kChunk; }
+int floor_to_chunk(int i) {
+  return i - ((i % kChunk) + kChunk) % kChunk;
+}
 
 // Value at a distance from the line; both in cells.
-double profile(double distance, double sigma) { return 255.0 * std::exp(-distance / sigma); }
-
-int kernel_radius(const TableParams& params) {
-  int k = 1;
-  while (std::lround(profile(k, params.sigma / params.cell)) > params.min_value) ++k;
-  return k;
+double profile(double distance, double sigma) {
+  return 255.0 * std::exp(-distance / sigma);
 }
 
 }  // namespace
@@ -38,19 +39,55 @@ void TableParams::validate() const {
   check(radius > 0.0 && std::isfinite(radius), "TableParams.radius", "must be above 0 m and finite");
 }
 
-Table::Table(const TableParams& params) : params_(params) {
-  params_.validate();
-  inverse_cell_ = 1.0 / params_.cell;
-  radius_cells_ = kernel_radius(params_);
-  kernel_scale_ = static_cast<double>(kKernelEntries) / (radius_cells_ * radius_cells_);
-  kernel_.resize(kKernelEntries + 1);
-  for (std::size_t i = 0; i < kernel_.size(); ++i) {
-    const double distance = std::sqrt(static_cast<double>(i) / kernel_scale_);
-    kernel_[i] = static_cast<std::uint8_t>(std::lround(profile(distance, params_.sigma / params_.cell)));
+Kernel::Kernel(const TableParams& params) {
+  const double sigma = params.sigma / params.cell;
+  radius = 1;
+  while (std::lround(profile(radius, sigma)) > params.min_value) ++radius;
+  scale = std::max(1, kKernelEntries / (radius * radius));  // whole, so that whole distances in cells are exact
+  const std::size_t last = static_cast<std::size_t>(scale) * radius * radius;
+  values.resize(last + 2);  // one more takes what rounding pushes beyond the radius
+  for (std::size_t i = 0; i <= last; ++i) {
+    values[i] = static_cast<std::uint8_t>(std::lround(profile(std::sqrt(static_cast<double>(i) / scale), sigma)));
   }
 }
 
-int Table::index(double coordinate) const { return static_cast<int>(std::floor(coordinate * inverse_cell_ + 0.5)); }
+Table::Table(const TableParams& params) : params_((params.validate(), params)), kernel_(params_) {
+  inverse_cell_ = 1.0 / params_.cell;
+}
+
+void Table::draw(const Points& world, const std::vector<Contour>& contours, const Pose& origin) {
+  Points scaled;  // in cells
+  std::vector<bool> kept(world.size());
+  double low_x = std::numeric_limits<double>::infinity(), low_y = low_x, high_x = -low_x, high_y = -low_x;
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    const Point& p = world[i];
+    scaled.push_back({p.x * inverse_cell_, p.y * inverse_cell_});
+    kept[i] = std::hypot(p.x - origin.x, p.y - origin.y) <= params_.radius;  // false when not finite
+    if (!kept[i]) continue;
+    low_x = std::min(low_x, scaled[i].x);
+    low_y = std::min(low_y, scaled[i].y);
+    high_x = std::max(high_x, scaled[i].x);
+    high_y = std::max(high_y, scaled[i].y);
+  }
+  if (!(low_x <= high_x)) return;
+  cover(static_cast<int>(std::floor(low_x)) - kernel_.radius, static_cast<int>(std::floor(low_y)) - kernel_.radius,
+        static_cast<int>(std::ceil(high_x)) + kernel_.radius, static_cast<int>(std::ceil(high_y)) + kernel_.radius);
+  std::atomic_store(&bounds_, std::shared_ptr<const BoundPyramid>());
+  empty_ = false;
+  Brush brush(kernel_, cells_.data(), x0_, y0_, width_);
+  for (const Contour& contour : contours) {
+    for (std::size_t k = 0; k < contour.size(); ++k) {
+      if (!kept[contour[k]]) continue;
+      const bool linked = k > 0 && kept[contour[k - 1]];
+      const bool last = k + 1 == contour.size() || !kept[contour[k + 1]];
+      if (linked || last) brush.draw(scaled[contour[linked ? k - 1 : k]], scaled[contour[k]], last);
+    }
+  }
+}
+
+int Table::index(double coordinate) const {
+  return static_cast<int>(std::floor(coordinate * inverse_cell_ + 0.5));
+}
 
 std::uint8_t Table::value(int ix, int iy) const {
   const int column = ix - x0_;
@@ -60,20 +97,19 @@ std::uint8_t Table::value(int ix, int iy) const {
 }
 
 double Table::interpolate(double x, double y, double* dx, double* dy) const {
-  const double u = x * inverse_cell_;
-  const double v = y * inverse_cell_;
-  const double column = std::floor(u + 0.5);
-  const double row = std::floor(v + 0.5);
   *dx = *dy = 0.0;
-  if (!(column > x0_ && row > y0_ && column < x0_ + width_ - 1.0 && row < y0_ + height_ - 1.0)) return 0.0;
+  const double u = x * inverse_cell_ - x0_;  // in cells of the rectangle
+  const double v = y * inverse_cell_ - y0_;
+  if (!(u >= 0.5 && v >= 0.5 && u < width_ - 1.5 && v < height_ - 1.5)) return 0.0;
+  const int column = static_cast<int>(u + 0.5);
+  const int row = static_cast<int>(v + 0.5);
   const double fx = u - column;  // -0.5..0.5
   const double fy = v - row;
   const double wx[3] = {0.5 * (0.5 - fx) * (0.5 - fx), 0.75 - fx * fx, 0.5 * (0.5 + fx) * (0.5 + fx)};
   const double wy[3] = {0.5 * (0.5 - fy) * (0.5 - fy), 0.75 - fy * fy, 0.5 * (0.5 + fy) * (0.5 + fy)};
   const double gx[3] = {fx - 0.5, -2.0 * fx, fx + 0.5};
   const double gy[3] = {fy - 0.5, -2.0 * fy, fy + 0.5};
-  const std::uint8_t* cell = cells_.data() + static_cast<std::ptrdiff_t>(row - y0_ - 1.0) * width_ +
-                             static_cast<std::ptrdiff_t>(column - x0_ - 1.0);
+  const std::uint8_t* cell = cells_.data() + static_cast<std::ptrdiff_t>(row - 1) * width_ + (column - 1);
   double value = 0.0;
   for (int j = 0; j < 3; ++j, cell += width_) {
     const double sum = wx[0] * cell[0] + wx[1] * cell[1] + wx[2] * cell[2];
@@ -96,10 +132,12 @@ void Table::clear() {
 
 std::size_t Table::bytes() const {
   const auto bounds = std::atomic_load(&bounds_);
-  return cells_.capacity() + kernel_.capacity() + (bounds ? bounds->bytes() : 0);
+  return cells_.capacity() + kernel_.values.capacity() + (bounds ? bounds->bytes() : 0);
 }
 
-TableView Table::view() const { return {cells_.data(), x0_, y0_, width_, height_, width_}; }
+TableView Table::view() const {
+  return {cells_.data(), x0_, y0_, width_, height_, width_};
+}
 
 std::shared_ptr<const BoundPyramid> Table::bounds() const {
   auto bounds = std::atomic_load(&bounds_);
@@ -110,13 +148,13 @@ std::shared_ptr<const BoundPyramid> Table::bounds() const {
   return bounds;
 }
 
-// Grows the rectangle so that it holds a box of cells with a margin.
-void Table::cover(const Box& box) {
+// Grows the rectangle so that it holds some cells, with a margin.
+void Table::cover(int low_x, int low_y, int high_x, int high_y) {
   const bool first = width_ == 0;
-  const int x0 = std::min(floor_to_chunk(box.x0 - kMargin), first ? box.x0 : x0_);
-  const int y0 = std::min(floor_to_chunk(box.y0 - kMargin), first ? box.y0 : y0_);
-  const int x1 = std::max(floor_to_chunk(box.x1 + kMargin) + kChunk, first ? box.x1 : x0_ + width_);
-  const int y1 = std::max(floor_to_chunk(box.y1 + kMargin) + kChunk, first ? box.y1 : y0_ + height_);
+  const int x0 = std::min(floor_to_chunk(low_x - kMargin), first ? low_x : x0_);
+  const int y0 = std::min(floor_to_chunk(low_y - kMargin), first ? low_y : y0_);
+  const int x1 = std::max(floor_to_chunk(high_x + kMargin) + kChunk, first ? high_x : x0_ + width_);
+  const int y1 = std::max(floor_to_chunk(high_y + kMargin) + kChunk, first ? high_y : y0_ + height_);
   if (!first && x0 == x0_ && y0 == y0_ && x1 == x0_ + width_ && y1 == y0_ + height_) return;
   const auto width = static_cast<std::size_t>(x1 - x0);
   const auto height = static_cast<std::size_t>(y1 - y0);

@@ -17,7 +17,7 @@ constexpr double kWindowSigmas = 3.0;
 constexpr double kWorthwhileHits = 0.02;  // another guess must bring this many more hits to be believed
 constexpr double kRetryWindow = 3.0;      // the last try's window, and its prior's standard deviations twice as wide
 constexpr double kRetryPrior = 2.0;
-constexpr double kLongestStep = 2.0;      // the constant velocity is not drawn out over more than this [s]
+constexpr double kLongestStep = 2.0;  // the constant velocity is not drawn out over more than this [s]
 
 Eigen::Matrix3d diagonal(double sigma_xy, double sigma_theta) {
   const Eigen::Vector3d variances(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_theta * sigma_theta);
@@ -69,14 +69,21 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
   // On the window's border but with good hits, the pose is still the best known; it must not shape the map, though.
   const bool usable =
       match.usable() || (match.status == Status::kSaturated && match.hit_fraction >= params_.retry_hits);
-  if (!usable) match.pose = expected.mean;
-  if (match.usable() && should_add(match)) pending_ = Pending{drop_invalid(body), match.pose};
-  remember(match.pose, time, expected.covariance, usable);
-  if (rejected_ >= params_.max_rejected_scans) {
-    ++restarts_;
-    history_.clear();
-    return start(body, time, expected);
+  matched_ = usable;
+  if (usable) {
+    if (match.usable() && should_add(match)) pending_ = Pending{drop_invalid(body), match.pose};
+  } else {
+    match.pose = expected.mean;
+    match.covariance = expected.covariance;
+    match.information.setZero();
+    const bool seen = match.status != Status::kEmptyScan && match.status != Status::kTooFewPoints;
+    if (seen && ++rejected_ >= params_.max_rejected_scans) {  // a blind moment says nothing against the map
+      ++restarts_;
+      history_.clear();
+      return start(body, time, expected);
+    }
   }
+  remember(match.pose, time, expected.covariance, usable);
   return match;
 }
 
@@ -84,8 +91,7 @@ void Tracker::reset(const Pose& pose) {
   check(is_finite(pose), "the pose", "is not finite");
   history_.clear();
   pending_.reset();
-  last_time_.reset();
-  velocity_ = Pose{};
+  velocity_.clear();
   drift_.setZero();
   pose_ = pose;
   rejected_ = 0;
@@ -98,6 +104,7 @@ void Tracker::set_pose(const Pose& pose) {
   } else {
     pending_.reset();
   }
+  velocity_.replace_last(pose);
   pose_ = pose;
 }
 
@@ -105,6 +112,7 @@ void Tracker::set_pose(const Pose& pose) {
 Match Tracker::start(const Points& body, double time, const Prior& expected) {
   Match match;
   Points points = drop_invalid(body);
+  matched_ = false;
   match.pose = expected.mean;
   match.points = static_cast<int>(points.size());
   match.covariance = expected.covariance;
@@ -122,11 +130,11 @@ Match Tracker::start(const Points& body, double time, const Prior& expected) {
 
 void Tracker::join_pending() {
   if (!pending_) return;
-  const Points world = transform(pending_->pose, pending_->body);
-  history_.add(world, extract_contours(pending_->body, params_.contours), pending_->pose);
-  last_added_ = pending_->pose;
-  ++added_scans_;
+  const Pending scan = std::move(*pending_);
   pending_.reset();
+  history_.add(transform(scan.pose, scan.body), extract_contours(scan.body, params_.contours), scan.pose);
+  last_added_ = scan.pose;
+  ++added_scans_;
 }
 
 Prior Tracker::expect(double time, const std::optional<Motion>& odometry) const {
@@ -142,14 +150,13 @@ Prior Tracker::expect(double time, const std::optional<Motion>& odometry) const 
   return prior;
 }
 
-// Where the last motion leads, in the body's frame and by time, bounded by the largest search ranges.
+// Where the last motion leads, bounded by the largest search ranges.
 Pose Tracker::predict(double time) const {
-  if (params_.stationary_motion_model || !last_time_) return pose_;
-  const double dt = std::clamp(time - *last_time_, 0.0, kLongestStep);
+  if (params_.stationary_motion_model) return pose_;
+  const Pose motion = velocity_.motion_until(time);
   const auto bounded = [](double value, double limit) { return std::clamp(value, -limit, limit); };
-  return pose_ * Pose{bounded(velocity_.x * dt, params_.max_search_range_xy),
-                      bounded(velocity_.y * dt, params_.max_search_range_xy),
-                      bounded(velocity_.theta * dt, params_.max_search_range_theta)};
+  return pose_ * Pose{bounded(motion.x, params_.max_search_range_xy), bounded(motion.y, params_.max_search_range_xy),
+                      bounded(motion.theta, params_.max_search_range_theta)};
 }
 
 Window Tracker::window(const Prior& prior, double scale) const {
@@ -165,12 +172,12 @@ Match Tracker::try_match(const Points& body, const Prior& prior, double widen) c
   return matcher_.match(history_.table(), body, prior.mean, window(prior, widen), &prior);
 }
 
-// Odometry freezes and jumps at times. A poor match is tried again where the robot would be if it had kept its velocity,
-// then in a wider window; another pose is believed only if clearly more points hit.
+// Odometry freezes and jumps at times. A poor match is tried again where the robot would be if it had kept its
+// velocity, then in a wider window; another pose is believed only if clearly more points hit.
 Match Tracker::recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best) {
   const auto poor = [&] {
-    return best.status == Status::kNoOverlap || (best.points >= params_.matcher.min_points &&
-                                                 (best.saturated || best.hit_fraction < params_.retry_hits));
+    return best.status == Status::kNoOverlap ||
+           (best.points >= params_.matcher.min_points && (best.saturated || best.hit_fraction < params_.retry_hits));
   };
   const auto consider = [&](const Match& other) {
     const bool freed = best.saturated && !other.saturated && other.hit_fraction >= best.hit_fraction;
@@ -196,14 +203,9 @@ bool Tracker::should_add(const Match& match) const {
 }
 
 void Tracker::remember(const Pose& pose, double time, const Eigen::Matrix3d& expected, bool usable) {
-  const double dt = last_time_ ? time - *last_time_ : 0.0;
-  if (dt > 0.0) {  // else keep the velocity: clocks of logs step back now and then
-    const Pose moved = between(pose_, pose);
-    velocity_ = {moved.x / dt, moved.y / dt, moved.theta / dt};
-  }
-  last_time_ = time;
+  velocity_.add(pose, time);
   pose_ = pose;
-  rejected_ = usable ? 0 : rejected_ + 1;
+  if (usable) rejected_ = 0;
   drift_ = usable ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : expected;
 }
 

@@ -11,7 +11,7 @@ namespace frsm {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kReach = 1e6;  // [m]; keeps cell indices far from the limits of int for every sensible cell
+constexpr double kReach = 1e5;  // [m]; keeps cell indices far from the limits of int
 
 }  // namespace
 
@@ -39,7 +39,9 @@ Pose between(const Pose& T_a_b, const Pose& T_a_c) {
   return {c * dx + s * dy, -s * dx + c * dy, wrap(T_a_c.theta - T_a_b.theta)};
 }
 
-double distance(const Pose& a, const Pose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double distance(const Pose& a, const Pose& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
 
 Points transform(const Pose& pose, const Points& points) {
   const double c = std::cos(pose.theta);
@@ -60,14 +62,15 @@ bool is_finite(const Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.theta);
 }
 
-bool is_finite(const Point& point) { return std::isfinite(point.x) && std::isfinite(point.y); }
+bool is_finite(const Point& point) {
+  return std::isfinite(point.x) && std::isfinite(point.y);
+}
 
 Points drop_invalid(const Points& points) {
   Points valid;
   valid.reserve(points.size());
-  std::copy_if(points.begin(), points.end(), std::back_inserter(valid), [](const Point& p) {
-    return is_finite(p) && std::abs(p.x) < kReach && std::abs(p.y) < kReach;
-  });
+  std::copy_if(points.begin(), points.end(), std::back_inserter(valid),
+               [](const Point& p) { return is_finite(p) && std::abs(p.x) < kReach && std::abs(p.y) < kReach; });
   return valid;
 }
 

@@ -1,70 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""Command line of the simulator: ``python -m oort.simulate``."""
+"""``python -m oort.simulate``."""
 
-import argparse
-import math
 import sys
-from collections import Counter
-from collections.abc import Sequence
-from pathlib import Path
 
-from oort.simulate.drive import Drive, SimulationConfig, simulate_drive
-from oort.simulate.sensor import Sensor
-from oort.simulate.writers import write_drive
+from oort.simulate.command import main
 
-
-def main(argv: Sequence[str] | None = None) -> int:
-    """Simulate a drive, write its files and print a summary. Returns the exit status: 0, or 2 after an error."""
-    arguments = _parser().parse_args(argv)
-    try:
-        sensor = Sensor(
-            field_of_view=math.radians(arguments.fov),
-            beams=round(arguments.fov) if arguments.beams is None else arguments.beams,
-            range_max=arguments.max_range,
-        )
-        config = SimulationConfig(sensor, arguments.odometry_error, arguments.person, arguments.minutes)
-        drive = simulate_drive(arguments.seed, config)
-        name = arguments.name or f"home_{arguments.seed}"
-        paths = write_drive(drive, arguments.out, name, arguments.picture)
-    except (OSError, ValueError) as error:
-        print(f"oort simulate: {error}", file=sys.stderr)
-        return 2
-    print(_summary(drive))
-    for path in paths:
-        print(path)
-    return 0
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="oort simulate",
-        description="Simulate a robot's drive through a made-up home: scans, odometry and the truth.",
-        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
-    )
-    parser.add_argument("--seed", type=int, default=0, help="the home and all that is random follow from it")
-    parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="where the files go")
-    parser.add_argument("--name", help="the files' name without ending; home_SEED if not given")
-    parser.add_argument("--odometry-error", type=float, default=1.0, metavar="F", help="0: none, 3: a bad base")
-    parser.add_argument("--fov", type=float, default=180.0, metavar="DEG", help="field of view, straight ahead")
-    parser.add_argument("--beams", type=int, metavar="N", help="beams over it; one per degree if not given")
-    parser.add_argument("--max-range", type=float, default=3.0, metavar="M", help="metres that the sensor sees")
-    parser.add_argument("--minutes", type=float, default=3.0, help="drive on after the tour until about then")
-    parser.add_argument("--no-person", dest="person", action="store_false", help="nobody crosses the view")
-    parser.add_argument("--picture", action=argparse.BooleanOptionalAction, default=True, help="write a PNG too")
-    return parser
-
-
-def _summary(drive: Drive) -> str:
-    rooms = Counter(room.kind for room in drive.home.rooms)
-    named = ", ".join(f"{count} {kind}s" if count > 1 else kind for kind, count in sorted(rooms.items()))
-    distance, heading = drive.odometry_error_at_end
-    return (
-        f"{len(drive.home.rooms)} rooms ({named}), {drive.home.area:.0f} m2\n"
-        f"{drive.duration / 60.0:.1f} minutes, {len(drive.scan_stamps)} scans, {drive.length:.1f} m driven\n"
-        f"odometry at the end off by {distance:.2f} m and {math.degrees(heading):+.1f} degrees"
-    )
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+sys.exit(main())

@@ -24,7 +24,7 @@ STEPS_PER_SCAN = 5  # 10 scans a second
 DOCKED = 2.0  # s on the dock, before and after
 AFTER_DOCKING = 1.05  # s from standing on the dock to the call that tells so; falls between two scans
 CRUISE = (0.28, 0.45)  # m/s
-MEAN_SPEED = 0.33  # m/s, turns and halts included, to guess a tour's length from its duration
+MEAN_SPEED = 0.4  # m/s of routes' cost, turns and halts included, to guess a tour's length from its duration
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,9 @@ def _drive(home: Home, places: Places, minutes: float, rng: np.random.Generator)
     driver.turn_to(float(home.dock[2]))
     driver.back_onto(home.dock)
     driver.wait(DOCKED)
-    return driver.motion()
+    motion = driver.motion()
+    whole = len(motion.steps) // STEPS_PER_SCAN * STEPS_PER_SCAN  # the last step is the last scan's
+    return Motion(motion.poses[: whole + 1], motion.steps[:whole])
 
 
 def _straight(dock: Array) -> Array:

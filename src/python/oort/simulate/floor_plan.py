@@ -191,9 +191,7 @@ def _shared_wall(a: Rect, b: Rect) -> tuple[Rect, bool] | None:
     return None
 
 
-def _cut_doorways(
-    kinds: Sequence[str], rects: Sequence[Rect], rng: np.random.Generator
-) -> tuple[Doorway, ...] | None:
+def _cut_doorways(kinds: Sequence[str], rects: Sequence[Rect], rng: np.random.Generator) -> tuple[Doorway, ...] | None:
     """Doorways that join all rooms (a spanning tree that prefers the corridor) and up to two more for loops."""
     candidates = []
     for a in range(len(rects)):
@@ -227,9 +225,7 @@ def _reluctance(pair: set[str]) -> float:
     return 1.0 if "living room" in pair else 2.0
 
 
-def _cut(
-    kinds: Sequence[str], rooms: tuple[int, int], wall: tuple[Rect, bool], rng: np.random.Generator
-) -> Doorway:
+def _cut(kinds: Sequence[str], rooms: tuple[int, int], wall: tuple[Rect, bool], rng: np.random.Generator) -> Doorway:
     """A door, or now and then a wide opening to the living room, at a random place of the wall."""
     rect, along_y = wall
     low, high = (rect.y0, rect.y1) if along_y else (rect.x0, rect.x1)

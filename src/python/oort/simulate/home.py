@@ -10,12 +10,13 @@ import numpy as np
 from oort.poses import Array, compose
 from oort.simulate import furniture
 from oort.simulate.floor_plan import Doorway, FloorPlan, Rect, make_floor_plan
-from oort.simulate.free_space import ClearanceGrid, flood
+from oort.simulate.free_space import RESOLUTION, ClearanceGrid, flood
 from oort.simulate.furniture import Piece, overlap
 from oort.simulate.planar import transform
 
 PASSAGE = 0.3  # m of clearance that must be left on a way through every room
 KEPT_REACHABLE = 0.9  # part of a room's passable floor that furniture may not cut off
+FREE_FLOOR = 0.18  # part of a room's area that furniture leaves passable
 DOOR_APPROACH = 0.7  # m on both sides of a doorway where nothing stands
 DOCK_SIZE = (0.32, 0.08)  # width, depth
 DOCK_TO_BASE = 0.17  # m from the dock's front to the base's centre when docked
@@ -236,11 +237,13 @@ class _Furnisher:
         return False
 
     def _is_whole(self, index: int) -> bool:
-        """Whether the places to reach in a room, and most of its passable floor, hang together."""
+        """Whether a room keeps floor enough, and that and the places to reach in it hang together."""
         window = self.grid.window(self.plan.rooms[index].rect.grown(0.2, 0.2))
         passable = self.grid.clearance[window] >= PASSAGE
         places = [self.grid.cell(x, y) for x, y in self._must_reach[index]]
         places = [(row - window[0].start, column - window[1].start) for row, column in places]
         reached = flood(passable, places[0])
-        kept = KEPT_REACHABLE * np.count_nonzero(passable)
-        return bool(all(reached[place] for place in places) and np.count_nonzero(reached) >= kept)
+        count = np.count_nonzero(reached)
+        kept = count >= KEPT_REACHABLE * np.count_nonzero(passable)
+        roomy = count * RESOLUTION**2 >= FREE_FLOOR * self.plan.rooms[index].rect.area
+        return bool(kept and roomy and all(reached[place] for place in places))

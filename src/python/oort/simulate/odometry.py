@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Odometry that errs: by scale, by noise that grows with way and turn, by a drifting heading and by slipping wheels.
 
-The sizes below are those of a good base (factor 1): per drive a scale error of about 1 % of way and of turn, noise of
+The sizes below are those of a good base (factor 1): per drive a scale error of up to 2 % of way and of turn, noise of
 1 cm and 0.35 degrees per square root of a metre and 0.35 degrees per square root of a radian, a heading that drifts by
 about half a degree a minute while the base moves, and every 25 m or so a slip.
 """
@@ -11,7 +11,7 @@ import numpy as np
 
 from oort.poses import Array
 
-WAY_SCALE, TURN_SCALE = 0.01, 0.01
+WAY_SCALE, TURN_SCALE = 0.02, 0.02  # a drive's scale errors are drawn evenly up to these, either way
 WAY_NOISE = 0.01  # m per sqrt(m)
 TURN_NOISE_PER_WAY = 0.006  # rad per sqrt(m)
 TURN_NOISE_PER_TURN = 0.006  # rad per sqrt(rad)
@@ -30,7 +30,8 @@ def simulate_odometry(steps: Array, step: float, start: Array, error: float, rng
     """
     way, turn = steps[:, 0], steps[:, 1]
     n = len(steps)
-    way_scale, turn_scale, drift = rng.standard_normal(3) * [WAY_SCALE, TURN_SCALE, DRIFT]
+    way_scale, turn_scale = rng.uniform(-1.0, 1.0, 2) * [WAY_SCALE, TURN_SCALE]
+    drift = DRIFT * float(rng.standard_normal())
     moving = (way != 0.0) | (turn != 0.0)
     way_error = way_scale * way + WAY_NOISE * np.sqrt(np.abs(way)) * rng.standard_normal(n)
     turn_error = turn_scale * turn + moving * drift * step

@@ -23,6 +23,15 @@ struct TableParams {
   void validate() const;
 };
 
+/// Value of a cell by its squared distance from the nearest line.
+struct Kernel {
+  explicit Kernel(const TableParams& params);
+
+  int radius;                        ///< where it ends [cells]
+  int scale;                         ///< entries per squared cell
+  std::vector<std::uint8_t> values;  ///< values[round(scale * d^2)]
+};
+
 /// The rectangle of cells a table holds, for code that reads many of them. Cell (ix, iy) of the lattice is
 /// data[(iy - y0) * stride + (ix - x0)]; cells outside the rectangle are 0.
 struct TableView {
@@ -69,18 +78,11 @@ class Table {
   std::shared_ptr<const BoundPyramid> bounds() const;
 
  private:
-  struct Box {
-    int x0, y0, x1, y1;  // inclusive
-  };
-  void cover(const Box& box);
-  void draw_segment(const Point& a, const Point& b);
-  void draw_row(int iy, double first, double last, const Point& a, const Point& b);
+  void cover(int low_x, int low_y, int high_x, int high_y);
 
   TableParams params_;
   double inverse_cell_;
-  int radius_cells_;                  // of the kernel
-  std::vector<std::uint8_t> kernel_;  // value by squared distance
-  double kernel_scale_;               // kernel entries per squared cell
+  Kernel kernel_;
   std::vector<std::uint8_t> cells_;
   int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;
   bool empty_ = true;

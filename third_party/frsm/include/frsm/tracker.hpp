@@ -7,6 +7,7 @@
 #include "frsm/history.hpp"
 #include "frsm/matcher.hpp"
 #include "frsm/table.hpp"
+#include "frsm/velocity.hpp"
 
 namespace frsm {
 
@@ -30,16 +31,16 @@ struct TrackerParams {
   ContourParams contours;
   MatcherParams matcher;
   AddRule add;
-  int max_num_scans = 40;                 ///< history: the local map holds the last K/2 to K scans that joined (>= 2)
-  double initial_search_range_xy = 0.06;  ///< smallest half window [m]
-  double max_search_range_xy = 0.25;      ///< largest half window [m]
-  double initial_search_range_theta = 0.05;  ///< [rad]
-  double max_search_range_theta = 0.25;      ///< [rad]
-  bool stationary_motion_model = false;      ///< without odometry: expect no motion, rather than constant velocity
-  double prior_sigma_xy = 0.1;               ///< of the expected pose without odometry [m]
-  double prior_sigma_theta = 0.1;            ///< [rad]
-  double min_prior_sigma_xy = 0.005;         ///< added to the covariance of the odometry [m]
-  double min_prior_sigma_theta = 0.005;      ///< [rad]
+  int max_num_scans = 60;                   ///< history: the local map holds the last K/2 to K scans that joined (>= 2)
+  double initial_search_range_xy = 0.1;     ///< smallest half window [m]
+  double max_search_range_xy = 0.25;        ///< largest half window [m]
+  double initial_search_range_theta = 0.1;  ///< [rad]
+  double max_search_range_theta = 0.25;     ///< [rad]
+  bool stationary_motion_model = false;     ///< without odometry: expect no motion, rather than constant velocity
+  double prior_sigma_xy = 0.05;             ///< of the expected pose without odometry [m]
+  double prior_sigma_theta = 0.1;           ///< [rad]
+  double min_prior_sigma_xy = 0.005;        ///< added to the covariance of the odometry [m]
+  double min_prior_sigma_theta = 0.02;      ///< [rad]
   double retry_hits = 0.8;     ///< a match with fewer hits, or on the window's border, is tried again (0: never)
   int max_rejected_scans = 5;  ///< after as many unusable scans in a row a fresh local map starts
 
@@ -54,7 +55,8 @@ class Tracker {
 
   /// Matches the next scan. `body`: its points in the body frame, in sensor order; `time` [s]: only for the constant
   /// velocity model; `odometry`: the motion since the previous call, if known.
-  /// If the match is usable its pose becomes the tracker's, else the expected pose does (match.pose says which it is).
+  /// If the match is usable, or saturated with at least `retry_hits`, its pose becomes the tracker's; else the expected
+  /// pose does, and match.pose and match.covariance are those of the expectation. matched() tells which.
   /// The first scan after construction, reset() or a fresh start has nothing to match and returns kNoOverlap.
   /// Throws std::invalid_argument on an odometry that is not finite, or whose covariance is not positive semi-definite.
   Match track(const Points& body, double time, const std::optional<Motion>& odometry);
@@ -67,6 +69,9 @@ class Tracker {
   void set_pose(const Pose& pose);
 
   const Pose& pose() const { return pose_; }
+
+  /// Whether the last pose came from a match, rather than from the expectation.
+  bool matched() const { return matched_; }
 
   /// The local map that the next scan is matched against, without the last scan, which joins at the next call of
   /// track().
@@ -106,8 +111,8 @@ class Tracker {
   Eigen::Matrix3d drift_ =
       Eigen::Matrix3d::Zero();      // covariance of the motion since the last usable match, table's axes
   std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled
-  std::optional<double> last_time_;
-  Pose velocity_;     // body twist [m/s, m/s, rad/s]
+  Velocity velocity_;
+  bool matched_ = false;
   int rejected_ = 0;  // unusable scans in a row
   long added_scans_ = 0;
   long retries_ = 0;

@@ -52,7 +52,7 @@ Eigen::Matrix3d rotate_covariance(const Eigen::Matrix3d& covariance, double thet
 bool is_finite(const Pose& pose);
 bool is_finite(const Point& point);
 
-/// The points whose coordinates are finite and within the lattice's reach (|x|, |y| < 1e6 m), in their order.
+/// The points whose coordinates are finite and within the lattice's reach (|x|, |y| < 1e5 m), in their order.
 Points drop_invalid(const Points& points);
 
 }  // namespace frsm

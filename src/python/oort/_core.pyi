@@ -1,0 +1,324 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The engine of Oort. Use it through the modules of the package oort."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_Pose: TypeAlias = tuple[float, float, float]  # x [m], y [m], theta [rad]
+_Location: TypeAlias = tuple[str, str, int, _Pose]  # namespace, id, node id, T_node_location
+_Value: TypeAlias = bool | int | float | str
+
+__version__: str
+
+class Error(RuntimeError): ...
+class ParameterError(Error): ...
+class MapFileError(Error): ...
+class InputError(Error): ...
+class StateError(Error): ...
+
+class ParameterEntry:
+    """One row of the table of parameters."""
+
+    @property
+    def path(self) -> str: ...
+    @property
+    def type(self) -> str:
+        """bool, integer, number or string."""
+    @property
+    def unit(self) -> str: ...
+    @property
+    def default(self) -> _Value: ...
+    @property
+    def documented(self) -> _Value: ...
+    @property
+    def min(self) -> float | None: ...
+    @property
+    def max(self) -> float | None: ...
+    @property
+    def choices(self) -> list[str]: ...
+    @property
+    def later_choices(self) -> list[str]: ...
+    @property
+    def meaning(self) -> str: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def status(self) -> str:
+        """used, documented_unused or later."""
+    @property
+    def own(self) -> bool: ...
+
+class Parameters:
+    """The parameters of the engine, by their paths in params.json."""
+
+    def __init__(self) -> None:
+        """Every value at its default."""
+    def get(self, path: str) -> _Value:
+        """The value at a path. Raises ParameterError if it is unknown."""
+    def set(self, path: str, value: _Value) -> None:
+        """Sets the value at a path. Raises ParameterError if the path is unknown or the value not allowed."""
+    def check(self) -> None:
+        """Checks values against each other. Raises ParameterError."""
+    def copy(self) -> Parameters: ...
+    def to_dict(self) -> dict[str, _Value]:
+        """Every path and its value, in the order of params.json."""
+
+class Map:
+    """A map as a map file holds it. All arrays are copies; poses are rows of x, y [m], theta [rad]."""
+
+    def __init__(self) -> None:
+        """An empty map."""
+    def __len__(self) -> int:
+        """The number of nodes."""
+    @property
+    def node_ids(self) -> NDArray[np.uint64]:
+        """(N,) ids of the nodes, 0...N-1."""
+    @property
+    def node_poses(self) -> NDArray[np.float64]:
+        """(N, 3) T_map_sensor of each node."""
+    @property
+    def edges(self) -> dict[str, NDArray[Any]]:
+        """The links that are always believed, as a dict of arrays.
+
+        They are: id, i, j, time [s], node (at which it was calculated), pose (E, 3: T_i_j), covariance (E, 3, 3), type
+        (0 laser, 1 odometry).
+        """
+    @property
+    def switchable_edges(self) -> dict[str, NDArray[Any]]:
+        """The links that the optimiser may switch off: as edges, and switch in [0, 1]."""
+    def cloud(self, k: int) -> NDArray[np.float64]:
+        """(M, 3) beams of node k in the sensor's frame, in scan order: x, y, 1 for a return.
+
+        Of the others z is nan, and x nan or inf with y the bearing [rad] where the range was. Raises IndexError.
+        """
+    @property
+    def cloud_times(self) -> NDArray[np.float64]:
+        """(N,) stamp of each cloud [s]."""
+    @property
+    def incremental_results(self) -> dict[str, NDArray[Any]]:
+        """How each node was linked to the one before it, as a dict of arrays.
+
+        They are: id, target, local_pose (T_local_id), covariance (of local_pose), pose (T_target_id), hit_fraction.
+        """
+    @property
+    def loop_results(self) -> dict[str, NDArray[Any]]:
+        """How loops were closed, as a dict of arrays: id, target, pose (T_id_target), covariance, hit_fraction."""
+    @property
+    def locations(self) -> list[_Location]:
+        """Named places: a list of (namespace, id, node_id, (x, y, theta)) with the pose in the node's frame.
+
+        Assign a list to replace them, but not while another thread saves this map.
+        """
+    @locations.setter
+    def locations(self, value: Sequence[_Location]) -> None: ...
+
+class Saved:
+    """What save_metadata wrote."""
+
+    MAP: ClassVar[Saved]
+    METADATA: ClassVar[Saved]
+    def __init__(self, value: int) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class OccupancyGrid:
+    """A map to navigate by: the fields of nav_msgs/OccupancyGrid."""
+
+    @property
+    def resolution(self) -> float:
+        """Side of a cell [m]."""
+    @property
+    def origin(self) -> tuple[float, float]:
+        """Lower left corner (x, y) in the map frame [m]."""
+    @property
+    def width(self) -> int:
+        """Columns."""
+    @property
+    def height(self) -> int:
+        """Rows."""
+    @property
+    def cells(self) -> NDArray[np.int8]:
+        """(height, width) int8, a copy: 0 free, 100 occupied, -1 unknown; row 0 has the least y."""
+
+class Whitening:
+    """How an error e is weighted by its information L L^T."""
+
+    CORRECT: ClassVar[Whitening]
+    """L^T e"""
+    ORIGINAL: ClassVar[Whitening]
+    """L e, as Mayfield's Oort did"""
+    def __init__(self, value: int) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class OptimizerOptions:
+    """How the pose graph is solved."""
+
+    switchable_constraint_scale: float
+    """The squared Mahalanobis distance at which a link is half switched off."""
+    whitening: Whitening
+    max_iterations: int
+    def __init__(
+        self,
+        *,
+        switchable_constraint_scale: float = 2.0,
+        whitening: Whitening = ...,
+        max_iterations: int = 50,
+    ) -> None: ...
+
+class OptimizerSummary:
+    """How solving the pose graph went."""
+
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def initial_cost(self) -> float:
+        """Half the sum of squared residuals."""
+    @property
+    def final_cost(self) -> float: ...
+    @property
+    def message(self) -> str:
+        """Why the solver stopped."""
+
+class OdometryBuffer:
+    """Odometry poses by time, interpolated at a scan's stamp."""
+
+    def __init__(self, horizon: float = 0.0) -> None:
+        """Poses older than `horizon` [s] before the newest are dropped; 0 keeps all."""
+    def add(self, time: float, x: float, y: float, theta: float) -> None:
+        """Adds T_odom_base at a time [s]."""
+    def lookup(self, time: float) -> _Pose | None:
+        """T_odom_base (x, y, theta) at a time [s]; None outside the times held."""
+    def clear(self) -> None: ...
+    def __len__(self) -> int: ...
+
+class ScanResult:
+    """What became of a scan."""
+
+    @property
+    def outcome(self) -> str:
+        """node, carried (located relative to the last node) or skipped (too few returns)."""
+    @property
+    def node_id(self) -> int | None:
+        """The node that the pose is relative to, or None."""
+    @property
+    def T_node_sensor(self) -> _Pose:  # noqa: N802
+        """The sensor's pose (x, y, theta) seen from the node."""
+    @property
+    def hit_fraction(self) -> float:
+        """Share of the returns that hit the local map."""
+    @property
+    def status(self) -> str:
+        """What the scan matcher said; empty if it was not asked."""
+
+class Mapper:
+    """Turns scans with odometry into a map. Not thread-safe."""
+
+    def __init__(self, parameters: Parameters, sensor_on_base: _Pose = (0.0, 0.0, 0.0)) -> None: ...
+    def add_scan(
+        self,
+        time: float,
+        angle_min: float,
+        angle_increment: float,
+        range_min: float,
+        range_max: float,
+        ranges: ArrayLike,
+        odometry: _Pose,
+    ) -> ScanResult:
+        """Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then."""
+    def notify_docked(self) -> bool:
+        """Links the current place to the dock. Whether a closure was found."""
+    def begin_session(self, sensor_on_map: _Pose) -> None:
+        """The next scan begins a new chain at about this pose of the map."""
+    def resume_from_paused(self) -> None:
+        """The next scan makes a node whose link to the last one is very uncertain."""
+    def finish(self) -> None:
+        """Brings the map to its final solution."""
+    def map(self) -> Map:
+        """A snapshot of the map."""
+    def set_map(self, map: Map) -> None:
+        """Replaces everything by a map from elsewhere."""
+    @property
+    def num_nodes(self) -> int: ...
+    @property
+    def has_pose(self) -> bool:
+        """Whether the sensor's pose in the map is known."""
+    @property
+    def sensor_pose(self) -> _Pose:
+        """The latest scan's T_map_sensor at the current solution."""
+    @property
+    def odom_pose(self) -> _Pose:
+        """T_map_odom at the current solution."""
+    def create_location(self, name_space: str, id: str, pose: _Pose) -> None:
+        """Names a pose of the map."""
+    def create_points(
+        self, name_spaces: Sequence[str], points: Sequence[tuple[float, float]], ids: Sequence[str]
+    ) -> None:
+        """Names points of the map, relative to the node nearest to their centroid."""
+    def delete_location(self, name_space: str, id: str) -> bool: ...
+    def locate(self, name_space: str, id: str) -> _Pose | None:
+        """The place's pose in the map now, or None."""
+    @property
+    def locations(self) -> list[_Location]:
+        """(namespace, id, node id, T_node_location) of each place."""
+    @property
+    def statistics(self) -> dict[str, Any]:
+        """Counts since the mapper was made."""
+
+def parameter_table() -> list[ParameterEntry]:
+    """Every parameter once, in the order of params.json."""
+
+def load_map(path: str, ignore_checksum: bool = False) -> Map:
+    """Reads a map given by its base path, one of its files, or X.capnp. Raises MapFileError."""
+
+def save_map(path: str, map: Map) -> None:
+    """Writes a map's three files as one. Raises MapFileError; the old map is then still whole."""
+
+def save_metadata(path: str, map: Map) -> Saved:
+    """Writes a map's locations, or the whole map where those on disk would not fit them. Raises MapFileError."""
+
+def normalise_map_path(path: str) -> str:
+    """The absolute base path B of a map given as B, B.map_capnp, B.map_meta_capnp or X.capnp, links followed.
+
+    Raises MapFileError.
+    """
+
+def render_map(map: Map, parameters: Parameters) -> tuple[OccupancyGrid, OccupancyGrid]:
+    """Draws a map: (map, map_cleaned), the second without speckle noise.
+
+    Of the parameters output_map counts. Raises ParameterError or InputError.
+    """
+
+def optimize_graph(
+    node_poses: ArrayLike,
+    i: ArrayLike,
+    j: ArrayLike,
+    measurements: ArrayLike,
+    covariances: ArrayLike,
+    switchable: ArrayLike,
+    options: OptimizerOptions = ...,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], OptimizerSummary]:
+    """Solves a pose graph given as arrays.
+
+    They are: node_poses (N, 3: x, y [m], theta [rad]) to start from; for each of M edges the nodes i and j (M,), the
+    measured T_i_j (M, 3), its covariance (M, 3, 3; along the axes of node i) and whether it may be switched off (M,).
+    The first node of each connected part keeps its pose. Returns (poses (N, 3), switches (M,) in [0, 1], summary).
+    Raises InputError and ParameterError.
+    """
+
+def optimize_map(map: Map, options: OptimizerOptions = ...) -> OptimizerSummary:
+    """Solves the pose graph of a map in place, from its poses and switches.
+
+    No other thread may use the map meanwhile. Returns the summary. Raises InputError and ParameterError; the map is
+    then unchanged.
+    """

@@ -1,0 +1,399 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "oort/geometry/errors.hpp"
+#include "oort/storage/codec.hpp"
+#include "oort/storage/file_set.hpp"
+#include "oort/storage/map_file.hpp"
+#include "oort/storage/md5.hpp"
+#include "oort/storage/paths.hpp"
+#include "storage_fixtures.hpp"
+
+namespace oort {
+namespace {
+
+using testing::make_map;
+using testing::read_file;
+using testing::write_file;
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kSuffixes = {kMapSuffix, kMetadataSuffix, kChecksumSuffix};
+
+class Storage : public ::testing::Test {
+ protected:
+  /// The message of the MapFileError that loading ends with.
+  std::string load_error(const std::string& path, const LoadOptions& options = {}) const {
+    try {
+      load_map(path, options);
+    } catch (const MapFileError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> list;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) list.push_back(entry.path().filename().string());
+    std::sort(list.begin(), list.end());
+    return list;
+  }
+
+  testing::TemporaryFolder folder_;
+  const std::string base_ = folder_ / "home";
+  const std::vector<std::string> whole_set_ = {"home.map_capnp", "home.map_meta_capnp", "home.md5"};
+};
+
+/// Whether two maps are the same in every bit.
+bool same(const Map& a, const Map& b) {
+  return encode_map(a) == encode_map(b) && encode_metadata(a.locations) == encode_metadata(b.locations);
+}
+
+// ---- saving and loading ----
+
+TEST_F(Storage, SavesThreeFilesAndLoadsThemAgain) {
+  save_map(base_, make_map());
+  EXPECT_EQ(names(), whole_set_);
+  EXPECT_TRUE(same(load_map(base_), make_map()));
+}
+
+TEST_F(Storage, WritesTheChecksumsAsMd5sumPrintsThem) {
+  save_map(base_, make_map());
+  EXPECT_EQ(read_file(base_ + ".md5"), md5_hex(read_file(base_ + ".map_capnp")) + "  home.map_capnp\n" +
+                                           md5_hex(read_file(base_ + ".map_meta_capnp")) + "  home.map_meta_capnp\n");
+}
+
+TEST_F(Storage, SavesTheSameBytesEachTime) {
+  save_map(base_, make_map());
+  save_map(folder_ / "copy", make_map());
+  EXPECT_EQ(read_file(base_ + ".map_capnp"), read_file((folder_ / "copy") + ".map_capnp"));
+}
+
+TEST_F(Storage, AnEmptyMapIsAMap) {
+  save_map(base_, {});
+  EXPECT_TRUE(load_map(base_).graph.nodes.empty());
+}
+
+TEST_F(Storage, SaysThatThereIsNoMap) {
+  EXPECT_NE(load_error(base_).find("home.map_capnp does not exist"), std::string::npos) << load_error(base_);
+  EXPECT_NE(load_error("/no/such/folder/home").find("/no/such/folder"), std::string::npos);
+  EXPECT_NE(load_error("").find("empty"), std::string::npos);
+  EXPECT_NE(load_error(folder_.path().string()).find("directory"), std::string::npos);
+}
+
+TEST_F(Storage, DoesNotSaveADefectiveMap) {
+  save_map(base_, make_map());
+  Map broken = make_map(5);
+  broken.graph.edges[0].i = 77;
+  EXPECT_THROW(save_map(base_, broken), MapFileError);
+  EXPECT_TRUE(same(load_map(base_), make_map()));
+}
+
+TEST_F(Storage, DoesNotLoadADefectiveMap) {
+  Map broken = make_map();
+  broken.clouds.pop_back();
+  FileSet(base_).write(encode_map(broken), encode_metadata({}));
+  EXPECT_NE(load_error(base_).find("4 nodes but 3 clouds"), std::string::npos) << load_error(base_);
+}
+
+TEST_F(Storage, NamesTheFileThatDoesNotFitItsChecksum) {
+  for (const std::string suffix : {kMapSuffix, kMetadataSuffix}) {
+    save_map(base_, make_map());
+    std::string bytes = read_file(base_ + suffix);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    write_file(base_ + suffix, bytes);
+    EXPECT_NE(load_error(base_).find(suffix + " does not fit its checksum"), std::string::npos) << load_error(base_);
+  }
+  write_file(base_ + ".md5", "nonsense\n");
+  EXPECT_NE(load_error(base_).find("does not hold the checksums"), std::string::npos) << load_error(base_);
+}
+
+TEST_F(Storage, LoadsWithoutChecksumsOnlyOnRequest) {
+  save_map(base_, make_map());
+  fs::remove(base_ + ".md5");
+  EXPECT_NE(load_error(base_).find("ignore_checksum"), std::string::npos) << load_error(base_);
+  EXPECT_TRUE(same(load_map(base_, {true}), make_map()));
+  write_file(base_ + ".md5", "nonsense\n");
+  EXPECT_TRUE(same(load_map(base_, {true}), make_map()));
+  fs::remove(base_ + ".map_meta_capnp");
+  EXPECT_TRUE(load_map(base_, {true}).locations.empty());
+  fs::remove(base_ + ".map_capnp");
+  EXPECT_NE(load_error(base_, {true}).find("home.map_capnp does not exist"), std::string::npos);
+}
+
+TEST_F(Storage, AMapWhoseFilesWereRenamedStaysReadable) {
+  save_map(base_, make_map());
+  for (const std::string& suffix : kSuffixes) fs::rename(base_ + suffix, (folder_ / "flat") + suffix);
+  EXPECT_TRUE(same(load_map(folder_ / "flat"), make_map()));
+}
+
+TEST_F(Storage, AFolderInPlaceOfAFileIsAnError) {
+  save_map(base_, make_map());
+  fs::remove(base_ + ".map_capnp");
+  fs::create_directory(base_ + ".map_capnp");
+  EXPECT_NE(load_error(base_).find("is not a file"), std::string::npos) << load_error(base_);
+}
+
+// ---- metadata alone ----
+
+TEST_F(Storage, SavesMetadataAlone) {
+  save_map(base_, make_map());
+  const auto before = fs::last_write_time(base_ + ".map_capnp");
+  Map map = make_map(4, 0.125);  // the poses moved since
+  map.locations.push_back({"waypoints", "bed", 2, {}});
+  EXPECT_EQ(save_metadata(base_, map), Saved::kMetadata);
+  EXPECT_EQ(fs::last_write_time(base_ + ".map_capnp"), before);
+  EXPECT_EQ(names(), whole_set_);
+  const Map loaded = load_map(base_);
+  EXPECT_EQ(loaded.locations.size(), 3U);
+  EXPECT_EQ(loaded.graph.nodes[0].pose.x, 0.0);
+}
+
+TEST_F(Storage, SavesTheWholeMapWhereMetadataAloneWouldNotFit) {
+  const auto saves_all = [&](const Map& map) {
+    EXPECT_EQ(save_metadata(base_, map), Saved::kMap);
+    EXPECT_TRUE(same(load_map(base_), map));
+  };
+  saves_all(make_map());   // nothing is there
+  saves_all(make_map(6));  // a location at a node that the file does not have
+  write_file(base_ + ".map_capnp", "damaged");
+  saves_all(make_map(6));
+}
+
+// ---- paths ----
+
+TEST_F(Storage, KnowsAPathInEachForm) {
+  for (const std::string form : {"home", "home.map_capnp", "home.map_meta_capnp", "home.capnp"}) {
+    EXPECT_EQ(normalise_map_path(folder_ / form), base_) << form;
+  }
+  save_map(folder_ / "home.capnp", make_map());
+  EXPECT_EQ(names(), whole_set_);
+  EXPECT_TRUE(same(load_map(folder_ / "home.capnp"), make_map()));
+}
+
+TEST_F(Storage, AMapNamedLikeTheManualsPathsIsFound) {
+  FileSet(folder_ / "home.capnp").write(encode_map(make_map()), encode_metadata({}));
+  EXPECT_EQ(load_map(folder_ / "home.capnp").graph.nodes.size(), 4U);
+  save_map(folder_ / "home.capnp", make_map(6));
+  EXPECT_EQ(load_map(folder_ / "home.capnp").graph.nodes.size(), 6U) << "what was saved is what is loaded";
+}
+
+TEST_F(Storage, ASingleFileIsLoadedOnRequest) {
+  write_file(folder_ / "home.capnp", encode_map(make_map()));
+  EXPECT_NE(load_error(folder_ / "home.capnp").find("ignore_checksum"), std::string::npos);
+  EXPECT_EQ(load_map(folder_ / "home.capnp", {true}).graph.nodes.size(), 4U);
+}
+
+TEST_F(Storage, FollowsLinks) {
+  fs::create_directory(folder_ / "maps");
+  const std::string real = folder_ / "maps/home";
+  save_map(real, make_map());
+  fs::create_symlink("maps/home.map_capnp", folder_ / "current.map_capnp");
+  fs::create_symlink("maps/home", folder_ / "last");
+  fs::create_directory_symlink("maps", folder_ / "folder");
+  fs::create_symlink("last", folder_ / "again");
+  for (const std::string link : {"current", "current.map_capnp", "last", "folder/home", "again.map_capnp"}) {
+    EXPECT_EQ(normalise_map_path(folder_ / link), real) << link;
+  }
+  save_map(folder_ / "current", make_map(6));
+  EXPECT_EQ(load_map(real).graph.nodes.size(), 6U);
+  EXPECT_TRUE(fs::is_symlink(folder_ / "current.map_capnp"));
+}
+
+TEST_F(Storage, LinksInACircleEnd) {
+  fs::create_symlink("b", folder_ / "a");
+  fs::create_symlink("a", folder_ / "b");
+  EXPECT_NE(load_error(folder_ / "a"), "no error");
+}
+
+TEST_F(Storage, RelativePathsBecomeAbsolute) {
+  EXPECT_EQ(normalise_map_path("home"), (fs::canonical(fs::current_path()) / "home").string());
+}
+
+// ---- interruptions ----
+
+/// Starts to write a set in a process of its own, which dies without warning after `steps` changes on the disk.
+/// Says whether the process got to the end before that.
+bool write_and_die(const std::string& base, const Map& map, int steps, bool metadata_only = false) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    int left = steps;
+    FileSet files(base, [&] {
+      if (--left == 0) ::_exit(1);
+    });
+    files.write(metadata_only ? std::nullopt : std::optional(encode_map(map)), encode_metadata(map.locations));
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST_F(Storage, ASetIsWholeWhereverSavingIsCutOff) {
+  const Map old_map = make_map(4);
+  const Map new_map = make_map(6);
+  int old_seen = 0;
+  int new_seen = 0;
+  for (int steps = 1;; ++steps) {
+    save_map(base_, old_map);
+    const bool finished = write_and_die(base_, new_map, steps);
+    const Map loaded = load_map(base_);
+    const bool is_new = same(loaded, new_map);
+    ASSERT_TRUE(is_new || same(loaded, old_map)) << "after step " << steps;
+    ASSERT_TRUE(is_new || new_seen == 0) << "once the new map is whole it must not be lost again";
+    (is_new ? new_seen : old_seen) += 1;
+    ASSERT_TRUE(!is_new || names() == whole_set_) << "loading completes the renaming";
+    save_map(base_, old_map);
+    ASSERT_TRUE(same(load_map(base_), old_map)) << "saving over the remains of step " << steps;
+    ASSERT_EQ(names(), whole_set_);
+    if (finished) break;
+  }
+  EXPECT_EQ(old_seen, 5);  // three files are each made and filled; with the last one filled the new set is whole
+  EXPECT_EQ(new_seen, 5);
+}
+
+TEST_F(Storage, MetadataIsWholeWhereverSavingIsCutOff) {
+  Map new_map = make_map(4);
+  new_map.locations.pop_back();
+  for (int steps = 1;; ++steps) {
+    save_map(base_, make_map(4));
+    const bool finished = write_and_die(base_, new_map, steps, true);
+    const Map loaded = load_map(base_);
+    ASSERT_TRUE(same(loaded, steps < 4 ? make_map(4) : new_map)) << "after step " << steps;
+    if (finished) break;
+  }
+}
+
+TEST_F(Storage, TheFirstSaveMayBeCutOffToo) {
+  ASSERT_FALSE(write_and_die(base_, make_map(), 5));
+  EXPECT_NE(load_error(base_).find("does not exist"), std::string::npos);
+  save_map(base_, make_map());
+  EXPECT_EQ(names(), whole_set_);
+  testing::TemporaryFolder other;
+  ASSERT_FALSE(write_and_die(other / "home", make_map(), 6));
+  EXPECT_TRUE(same(load_map(other / "home"), make_map()));
+}
+
+TEST_F(Storage, ASaveCutOffWhileRenamingIsNotLostToTheNextOneCutOff) {
+  save_map(base_, make_map(4));
+  ASSERT_FALSE(write_and_die(base_, make_map(6), 7));  // the map file is renamed, the others are not
+  ASSERT_FALSE(write_and_die(base_, make_map(8), 3));  // two renamings complete the former; then one file is made
+  EXPECT_TRUE(same(load_map(base_), make_map(6)));
+}
+
+TEST_F(Storage, RenamingsMayReachTheDiskInAnyOrder) {
+  const std::string new_base = folder_ / "new";
+  for (int done = 0; done < 8; ++done) {
+    save_map(base_, make_map(4));
+    save_map(new_base, make_map(6));
+    for (std::size_t k = 0; k < kSuffixes.size(); ++k) {
+      const bool is_renamed = (done >> k & 1) != 0;
+      fs::rename(new_base + kSuffixes[k], base_ + kSuffixes[k] + (is_renamed ? "" : kNewSuffix));
+    }
+    EXPECT_TRUE(same(load_map(base_), make_map(6))) << done;
+    EXPECT_EQ(names(), whole_set_) << done;
+  }
+}
+
+TEST_F(Storage, ANewSetThatIsDamagedIsNotTaken) {
+  save_map(base_, make_map(4));
+  write_and_die(base_, make_map(6), 6);
+  std::string bytes = read_file(base_ + ".map_capnp.new");
+  bytes.resize(bytes.size() / 2);
+  write_file(base_ + ".map_capnp.new", bytes);
+  EXPECT_TRUE(same(load_map(base_), make_map(4)));
+}
+
+// ---- failures ----
+
+TEST_F(Storage, AFullDiskLeavesTheOldMapAndNothingElse) {
+  save_map(base_, make_map(4));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);  // then writing beyond the limit fails as it does on a full disk
+    const rlimit limit{4096, 4096};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      save_map(base_, make_map(200));
+    } catch (const MapFileError&) {
+      ::_exit(7);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+  EXPECT_EQ(names(), whole_set_);
+  EXPECT_TRUE(same(load_map(base_), make_map(4)));
+}
+
+TEST_F(Storage, AFolderThatCannotBeWrittenIsAnError) {
+  if (::geteuid() == 0) {  // root may write anywhere; a folder that does not exist fails for everyone
+    EXPECT_THROW(save_map(folder_ / "none/home", make_map()), MapFileError);
+    return;
+  }
+  save_map(base_, make_map(4));
+  fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THROW(save_map(base_, make_map(6)), MapFileError);
+  EXPECT_TRUE(same(load_map(base_), make_map(4)));
+  fs::permissions(folder_.path(), fs::perms::owner_all);
+}
+
+TEST_F(Storage, AnErrorWhileWritingLeavesTheOldMapAndNothingElse) {
+  save_map(base_, make_map(4));
+  for (const std::string& suffix : kSuffixes) {
+    fs::create_directory(base_ + suffix + ".new");  // a file cannot be made in its place
+    EXPECT_THROW(save_map(base_, make_map(6)), MapFileError);
+    EXPECT_TRUE(same(load_map(base_), make_map(4)));
+    fs::remove(base_ + suffix + ".new");
+    EXPECT_EQ(names(), whole_set_);
+  }
+}
+
+TEST_F(Storage, SavingAndLoadingTakeTurns) {
+  save_map(base_, make_map(4));
+  const auto save_often = [&](int nodes) {
+    for (int i = 0; i < 15; ++i) save_map(base_, make_map(nodes));
+  };
+  std::thread first(save_often, 4);
+  std::thread second(save_often, 6);
+  for (int i = 0; i < 40; ++i) {
+    const Map map = load_map(base_);
+    EXPECT_TRUE(same(map, make_map(4)) || same(map, make_map(6)));
+  }
+  first.join();
+  second.join();
+  EXPECT_EQ(names(), whole_set_);
+}
+
+// ---- the map that Mayfield's Oort wrote ----
+
+TEST_F(Storage, TheGenuineMapComesBackByteForByte) {
+  const char* datasets = std::getenv("OORT_DATASETS");
+  const fs::path root = fs::path(__FILE__).parent_path() / "../..";
+  const fs::path genuine = (datasets ? fs::path(datasets) : root / "../shared/datasets") / "kuri_oort_map";
+  if (!fs::exists(genuine)) GTEST_SKIP() << genuine << " is not there; set OORT_DATASETS";
+  for (const std::string& suffix : kSuffixes) fs::copy(genuine / ("map" + suffix), folder_ / ("map" + suffix));
+  const Map map = load_map(folder_ / "map");
+  EXPECT_EQ(map.graph.nodes.size(), 9U);
+  EXPECT_EQ(map.graph.edges.size(), 8U);
+  EXPECT_EQ(map.graph.switchable_edges.size(), 1U);
+  EXPECT_EQ(map.clouds.at(8).points.size(), 180U);
+  EXPECT_EQ(map.locations.at(0).name_space, "dock");
+  save_map(folder_ / "map", map);
+  for (const std::string& suffix : kSuffixes) {
+    EXPECT_EQ(read_file(folder_ / ("map" + suffix)), read_file(genuine / ("map" + suffix))) << suffix;
+  }
+}
+
+}  // namespace
+}  // namespace oort

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <stdexcept>
+
+#include "frsm/contours.hpp"
+#include "scene.hpp"
+
+namespace frsm {
+namespace {
+
+Points line(int n, double spacing, Point start = {2.0, -1.0}) {
+  Points points;
+  for (int i = 0; i < n; ++i) points.push_back({start.x, start.y + i * spacing});
+  return points;
+}
+
+TEST(Contours, StraightWallIsOneChain) {
+  for (const ContourParams& params : {ContourParams::utm(), ContourParams::urg(), ContourParams::sick()}) {
+    const auto contours = extract_contours(line(50, 0.05), params);
+    ASSERT_EQ(contours.size(), 1U);
+    EXPECT_EQ(contours[0].size(), 50U);
+  }
+}
+
+TEST(Contours, StepOfHalfAMetreSplitsWalls) {
+  Points points = line(20, 0.05);
+  for (const Point& p : line(20, 0.05, {2.5, 0.0})) points.push_back(p);
+  EXPECT_EQ(extract_contours(points, ContourParams::sick()).size(), 2U);
+}
+
+TEST(Contours, EvenSpacing) {
+  // 0.45 m from the start: no short link beside it to justify the gap. 0.3 m: always allowed.
+  EXPECT_EQ(extract_contours(line(12, 0.45), ContourParams::sick()).size(), 12U);
+  EXPECT_EQ(extract_contours(line(12, 0.3), ContourParams::sick()).size(), 1U);
+}
+
+// A link beyond 0.4 m needs links of like length on both sides.
+TEST(Contours, WideGapIsBridgedWhereTheSpacingGrowsTowardsIt) {
+  const auto chains = [](const std::vector<double>& gaps) {
+    Points points{{1.0, 1.0}};
+    for (const double gap : gaps) points.push_back({points.back().x + gap, 1.0});
+    return extract_contours(points, ContourParams::sick()).size();
+  };
+  EXPECT_EQ(chains({0.1, 0.2, 0.3, 0.45, 0.3, 0.2, 0.1}), 1U);
+  EXPECT_EQ(chains({0.1, 0.1, 0.1, 0.45, 0.1, 0.1, 0.1}), 2U);
+  EXPECT_EQ(chains({0.1, 0.2, 0.3, 0.45}), 2U);
+}
+
+TEST(Contours, OutlierStaysAloneAndLeavesTheWallWhole) {
+  Points points = line(30, 0.05);
+  points[14] = {1.0, points[14].y};
+  const auto contours = extract_contours(points, ContourParams::sick());
+  ASSERT_EQ(contours.size(), 2U);
+  EXPECT_EQ(contours[0].size(), 29U);
+  EXPECT_EQ(contours[1], Contour{14});
+}
+
+TEST(Contours, EmptyAndSinglePoint) {
+  EXPECT_TRUE(extract_contours({}, ContourParams::sick()).empty());
+  const auto contours = extract_contours({{1.0, 1.0}}, ContourParams::sick());
+  ASSERT_EQ(contours.size(), 1U);
+  EXPECT_EQ(contours[0], Contour{0});
+}
+
+TEST(Contours, EveryPointIsInOneChainAndIndicesIncrease) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> coordinate(-2.0, 2.0);
+  for (int trial = 0; trial < 100; ++trial) {
+    Points points;
+    for (int i = 0; i < 120; ++i) points.push_back({coordinate(random), coordinate(random)});
+    std::vector<int> seen(points.size(), 0);
+    for (const Contour& contour : extract_contours(points, ContourParams::utm())) {
+      EXPECT_TRUE(std::is_sorted(contour.begin(), contour.end()));
+      for (const std::size_t i : contour) ++seen[i];
+    }
+    EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+  }
+}
+
+TEST(Contours, MirroredScanGivesMirroredChains) {
+  std::mt19937 random(4);
+  const Points points = test::scan(test::room(0.2), {0.1, 0.4, 0.3}, {181, test::kPi, 8.0, 0.01}, random);
+  Points mirrored(points.rbegin(), points.rend());
+  for (Point& p : mirrored) p.y = -p.y;
+  EXPECT_EQ(extract_contours(points, ContourParams::sick()).size(),
+            extract_contours(mirrored, ContourParams::sick()).size());
+}
+
+TEST(Contours, NamesTheParameterThatMakesNoSense) {
+  ContourParams params;
+  params.search_range = 0;
+  EXPECT_THROW(extract_contours({}, params), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frsm
