@@ -16,7 +16,7 @@ esac
 
 packages=(g++ cmake ninja-build python3 python3-venv python3-dev
   libceres-dev libeigen3-dev libopencv-core-dev libopencv-imgproc-dev capnproto libcapnp-dev)
-[ $test = ON ] && packages+=(libgtest-dev git)
+[ $test = ON ] && packages+=(libgtest-dev)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
@@ -33,6 +33,7 @@ fi
 
 # Debian's own interpreter, with its site packages: rospy lives there.
 [ -x .venv/bin/python ] || /usr/bin/python3 -m venv --system-site-packages .venv
-.venv/bin/python -m pip install --quiet --disable-pip-version-check --upgrade pip
+.venv/bin/python -m pip install --quiet --disable-pip-version-check "pip>=23.1"  # the first with -C
 .venv/bin/pip install --quiet "scikit-build-core>=0.10" "pybind11>=2.12"
+echo "Building Oort; the first time that takes some minutes."
 .venv/bin/pip install --quiet --no-build-isolation -C build-dir=build/dev -C cmake.define.OORT_TESTS=$test -e ".$extra"

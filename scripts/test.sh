@@ -5,8 +5,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh --test
-.venv/bin/ruff check src/python tests/py bench
-.venv/bin/ruff format --check src/python tests/py bench
+.venv/bin/ruff check
+.venv/bin/ruff format --check
 .venv/bin/mypy
 ctest --test-dir build/dev --output-on-failure -j 2
 .venv/bin/python -m pytest -q "$@"

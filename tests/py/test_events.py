@@ -28,7 +28,10 @@ def test_reads_in_the_order_of_the_file(tmp_path: Path) -> None:
         ("[1]", "event 0"),
         ('[{"t": 1}]', "event 0"),
         ('[{"t": 1, "call": "x", "arg": []}]', '"args"'),
-        ('[{"t": "1", "call": "x"}]', '"t" must be a number'),
+        ('[{"t": "1", "call": "x"}]', '"t" must be a finite number'),
+        ('[{"t": NaN, "call": "x"}]', '"t" must be a finite number'),
+        ('[{"t": -Infinity, "call": "x"}]', '"t" must be a finite number'),
+        ('[{"t": 1%s, "call": "x"}]' % (400 * "0"), '"t" must be a finite number'),
         ('[{"t": 1, "call": 2}]', '"call" must be a string'),
     ],
 )

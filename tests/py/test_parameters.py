@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from oort.errors import ParameterError
-from oort.parameters import Parameters, packaged_parameters, packaged_path, parameter_table, read_parameters
-from oort.parameters.__main__ import main
+from oort.parameters import Parameters, main, packaged_parameters, packaged_path, parameter_table, read_parameters
 from oort.parameters.relaxed_json import Section, parse
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -109,6 +109,27 @@ def test_locations_by_namespace_and_prefix(session: Session) -> None:
         session.locations.locate("place", "a")
 
 
+def test_empty_ids_are_made_up_and_never_twice(session: Session) -> None:
+    session.start()
+    drive_around(session)
+    first = session.create_location("place", "")
+    second = session.create_location("place", "")
+    session.locations.delete("place", first)
+    third = session.create_location("place", "")
+    assert third != second
+    assert len(session.locations.list_ids("place")) == 2
+
+
+def test_clearing_gives_up_places_that_wait_for_a_pose(session: Session) -> None:
+    session.start()
+    session.create_location("place", "a")
+    session.create_location("place/room", "b")
+    session.create_location("dock", "dock")
+    session.locations.clear("place")
+    drive_around(session)
+    assert session.locations.list_ids("", use_as_prefix=True) == [("place/room", "b"), ("dock", "dock")]
+
+
 def test_points_share_a_node_and_keep_their_places(session: Session) -> None:
     session.start()
     drive_around(session)

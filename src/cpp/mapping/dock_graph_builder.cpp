@@ -45,7 +45,7 @@ DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query
 DockGraphBuilder::DockGraphBuilder(const Parameters& parameters)
     : parameters_(parameters.dock_graph_builder),
       table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
-      contours_(contour_params(parameters.incremental_graph_builder.frsm_matcher)),
+      contours_(frsm::ContourParams::urg()),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
 
 std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chains, std::uint64_t query,

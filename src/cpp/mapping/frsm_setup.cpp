@@ -11,12 +11,6 @@ frsm::TableParams table_params(const FrsmMatcherParameters& p) {
   return params;
 }
 
-frsm::ContourParams contour_params(const FrsmMatcherParameters& p) {
-  if (p.line_profile == "utm") return frsm::ContourParams::utm();
-  if (p.line_profile == "sick") return frsm::ContourParams::sick();
-  return frsm::ContourParams::urg();
-}
-
 frsm::MatcherParams matcher_params(const FrsmMatcherParameters& p) {
   frsm::MatcherParams params;
   params.theta_step = p.theta_resolution;

@@ -12,7 +12,6 @@
 namespace oort {
 
 frsm::TableParams table_params(const FrsmMatcherParameters& p);
-frsm::ContourParams contour_params(const FrsmMatcherParameters& p);
 frsm::MatcherParams matcher_params(const FrsmMatcherParameters& p);
 
 }  // namespace oort

@@ -15,7 +15,7 @@ namespace {
 frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   frsm::TrackerParams params;
   params.table = table_params(p);
-  params.contours = contour_params(p);
+  params.contours = frsm::ContourParams::urg();
   params.matcher = matcher_params(p);
   params.add = p.key_scan_distance > 0.0 ? frsm::AddRule{} : frsm::AddRule::by_hits(p.add_scan_hit_thresh);
   if (p.key_scan_distance > 0.0) {

@@ -12,8 +12,8 @@
 namespace oort {
 namespace {
 
-// Submaps in memory at once: about the places a robot passes between two visits to one of them.
-constexpr std::size_t kSubmapCacheSize = 64;
+// Of submaps in memory at once: enough for the places a robot passes between two visits to one of them.
+constexpr std::size_t kSubmapCacheBytes = std::size_t{128} << 20;
 
 // The rough match looks at this many points, evenly chosen; the fine one looks at all of them around the rough
 // one's pose.
@@ -58,8 +58,8 @@ std::string refusal(const MatchFilterParameters& filter, double hits, const Diff
 LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
     : parameters_(parameters.loop_closure_graph_builder),
       table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
-      submaps_(static_cast<std::uint64_t>(parameters_.candidate_search.submap_neighborhood_size), kSubmapCacheSize,
-               table_, contour_params(parameters.incremental_graph_builder.frsm_matcher)),
+      submaps_(static_cast<std::uint64_t>(parameters_.candidate_search.submap_neighborhood_size), kSubmapCacheBytes,
+               table_, frsm::ContourParams::urg()),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
 
 std::vector<Closure> LoopClosureBuilder::find(const Map& map, const Chains& chains, std::uint64_t query,

@@ -25,6 +25,9 @@ constexpr double kSurprise = 11.345;
 constexpr std::uint64_t kMinSolveInterval = 10;
 constexpr std::uint64_t kSolveGrowth = 20;
 
+// So many nodes in a row that only odometry places, and the scan matcher starts afresh.
+constexpr int kMaxRefusals = 5;
+
 constexpr int kIterationsWhileMapping = 15;
 constexpr int kFinalIterations = 100;
 
@@ -170,7 +173,13 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
   }
   map_.graph.nodes.push_back(node);
   chains_.add(begins_segment, believed, scan.tracked.T_local_sensor);
-  if (believed) anchor_ = {node.id, scan.T_odom_sensor};
+  if (believed) {
+    anchor_ = {node.id, scan.T_odom_sensor};
+  } else if (refusals_in_a_row_ >= kMaxRefusals) {  // the local map does not fit what is seen any more: make a new one
+    incremental_.begin(scan.tracked.T_local_sensor);
+    anchor_ = {node.id, scan.T_odom_sensor};
+    refusals_in_a_row_ = 0;
+  }
   map_.clouds.push_back(scan.cloud);
   ++statistics_.nodes;
   scan.is_node = true;
@@ -205,6 +214,7 @@ bool Mapper::link_to_chain(LastScan& scan, Node& node) {
     scan.tracked.T_local_sensor = chains_.local_pose(previous.id) * T_previous_node;
     incremental_.correct(scan.tracked.T_local_sensor);
   }
+  refusals_in_a_row_ = believed ? 0 : refusals_in_a_row_ + 1;
   map_.incremental_results.push_back({node.id, previous.id, scan.tracked.T_local_sensor, scan.tracked.covariance,
                                       between(chains_.local_pose(previous.id), scan.tracked.T_local_sensor),
                                       scan.tracked.hit_fraction});

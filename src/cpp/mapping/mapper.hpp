@@ -125,6 +125,7 @@ class Mapper {
   Pose2 T_odom_sensor_tracked_;   // when the matcher was last asked,
   Pose2 T_local_sensor_tracked_;  // and what it said
   Anchor anchor_;
+  int refusals_in_a_row_ = 0;
   Pose2 T_odom_sensor_node_;  // at the newest node
   Pose2 T_odom_base_node_;
   std::uint64_t next_edge_id_ = 0;

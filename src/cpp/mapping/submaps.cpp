@@ -30,22 +30,30 @@ frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t o
   return points;
 }
 
-SubmapCache::SubmapCache(std::uint64_t neighborhood_size, std::size_t capacity, const frsm::TableParams& table,
+SubmapCache::SubmapCache(std::uint64_t neighborhood_size, std::size_t max_bytes, const frsm::TableParams& table,
                          const frsm::ContourParams& contours)
-    : neighborhood_size_(neighborhood_size), capacity_(capacity), table_(table), contours_(contours) {}
+    : neighborhood_size_(neighborhood_size), max_bytes_(max_bytes), table_(table), contours_(contours) {}
 
 std::shared_ptr<const frsm::Table> SubmapCache::get(const Map& map, const Chains& chains, std::uint64_t node) {
   const std::vector<std::uint64_t> nodes = chains.neighborhood(node, neighborhood_size_);
   const std::uint64_t end = nodes.back() + 1;
   const auto found =
       std::find_if(entries_.begin(), entries_.end(), [node](const Entry& entry) { return entry.node == node; });
-  if (found != entries_.end()) {
+  if (found != entries_.end() && found->end == end) {
     entries_.splice(entries_.begin(), entries_, found);
-    if (entries_.front().end == end) return entries_.front().table;
-    entries_.pop_front();
+  } else {
+    if (found != entries_.end()) entries_.erase(found);
+    entries_.push_front({node, end, draw_submap(map, chains, node, nodes, table_, contours_)});
   }
-  entries_.push_front({node, end, draw_submap(map, chains, node, nodes, table_, contours_)});
-  if (entries_.size() > capacity_) entries_.pop_back();
+  // Tables grow after they were handed out, when their bounds for branch and bound are built: count them anew.
+  std::size_t bytes = 0;
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    bytes += entry->table->bytes();
+    if (bytes > max_bytes_ && entry != entries_.begin()) {
+      entries_.erase(entry, entries_.end());
+      break;
+    }
+  }
   return entries_.front().table;
 }
 

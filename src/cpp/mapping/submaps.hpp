@@ -28,7 +28,7 @@ frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t o
 /// decides how long a query takes, never its result.
 class SubmapCache {
  public:
-  SubmapCache(std::uint64_t neighborhood_size, std::size_t capacity, const frsm::TableParams& table,
+  SubmapCache(std::uint64_t neighborhood_size, std::size_t max_bytes, const frsm::TableParams& table,
               const frsm::ContourParams& contours);
 
   std::shared_ptr<const frsm::Table> get(const Map& map, const Chains& chains, std::uint64_t node);
@@ -40,7 +40,7 @@ class SubmapCache {
     std::shared_ptr<const frsm::Table> table;
   };
   std::uint64_t neighborhood_size_;
-  std::size_t capacity_;
+  std::size_t max_bytes_;
   frsm::TableParams table_;
   frsm::ContourParams contours_;
   std::list<Entry> entries_;  // most recently used first

@@ -22,9 +22,10 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
           "2.3 ms a scan) and give the same local error (0.024 m).");
   v(p.theta_resolution, "theta_resolution", {0.01, "rad", {0.001, 0.2}},
     "Angular step of the matcher's search. Documented as unused; used here.");
-  v(p.max_num_scans, "max_num_scans", {20, "scans", {1, 1000}}, "Latest scans that make the matcher's local map.");
+  v(p.max_num_scans, "max_num_scans", {20, "scans", {2, 1000}},
+    "Latest scans that make the matcher's local map: the map holds between half as many and as many.");
   v(p.initial_search_range_xy, "initial_search_range_xy", {0.01, "m", {0.0, 5.0}},
-    "Half width of the search around the odometry's guess.");
+    "Half width of the search around the odometry's guess; more where odometry is less certain.");
   v(p.initial_search_range_theta, "initial_search_range_theta", {0.01, "rad", {0.0, 3.15}},
     "Half width of the search in heading.");
   v(p.max_search_range_xy, "max_search_range_xy", {0.1, "m", {0.0, 5.0}}, "Half width to which the search may grow.");
@@ -39,13 +40,10 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
     "up to 0.1 there is no pull.");
   v(p.key_scan_distance, "key_scan_distance", {0.2, "m", {0.0, 100.0}},
     "A matched scan this far from the last one in the local map joins it too; 0: only by hits.")
-      .own(0.0, "Key scans at regular steps show each wall from several places.");
+      .own(0.0, "@keyscan0");
   v(p.key_scan_angle, "key_scan_angle", {0.2, "rad", {0.001, 3.15}},
     "The same for a turn; in force with key_scan_distance.")
       .own(0.2);
-  v(p.line_profile, "line_profile", {"sick", {"urg", "utm", "sick"}},
-    "Which limits link neighbouring points to a line: by the gaps usual for a kind of sensor.")
-      .own("urg");
   v(p.max_point_range, "max_point_range", {25.0, "m", {0.5, 100.0}},
     "Points farther away are not drawn into the matcher's tables.")
       .own(25.0);
@@ -55,33 +53,37 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
 }
 
 void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
-  v(p.translation_per_meter, "translation_per_meter", {0.03, "m", {0.0, 10.0}},
+  v(p.translation_per_meter, "translation_per_meter", {0.1, "m", {0.0, 10.0}},
     "Standard deviation of x and y after one metre.")
-      .own(0.03);
-  v(p.translation_per_radian, "translation_per_radian", {0.01, "m", {0.0, 10.0}},
+      .own(0.1);
+  v(p.translation_per_radian, "translation_per_radian", {0.05, "m", {0.0, 10.0}},
     "Standard deviation of x and y after turning one radian.")
-      .own(0.01);
-  v(p.rotation_per_meter, "rotation_per_meter", {0.03, "rad", {0.0, 10.0}},
-    "Standard deviation of the heading after one metre.")
-      .own(0.03);
-  v(p.rotation_per_radian, "rotation_per_radian", {0.05, "rad", {0.0, 10.0}},
-    "Standard deviation of the heading after turning one radian.")
       .own(0.05);
-  v(p.translation_floor, "translation_floor", {0.003, "m", {1e-5, 1.0}},
+  v(p.rotation_per_meter, "rotation_per_meter", {0.1, "rad", {0.0, 10.0}},
+    "Standard deviation of the heading after one metre.")
+      .own(0.1);
+  v(p.rotation_per_radian, "rotation_per_radian", {0.15, "rad", {0.0, 10.0}},
+    "Standard deviation of the heading after turning one radian.")
+      .own(0.15);
+  v(p.translation_floor, "translation_floor", {0.005, "m", {1e-5, 1.0}},
     "Standard deviation of x and y of any motion, however small.")
-      .own(0.003);
-  v(p.rotation_floor, "rotation_floor", {0.003, "rad", {1e-5, 1.0}}, "Standard deviation of the heading of any motion.")
-      .own(0.003);
+      .own(0.005);
+  v(p.rotation_floor, "rotation_floor", {0.005, "rad", {1e-5, 1.0}}, "Standard deviation of the heading of any motion.")
+      .own(0.005);
 }
 
 void declare_match_filtering(const Section& v, MatchFilteringParameters& p) {
   v(p.dist_accept_threshold, "dist_accept_threshold", {0.06, "m", {0.0, 100.0}}, "No effect.").unused();
-  v(p.x_min_accept, "x_min_accept", {-0.05, "m", {-100.0, 100.0}},
-    "Least forward difference, match minus odometry, that is accepted.");
-  v(p.x_max_accept, "x_max_accept", {0.12, "m", {-100.0, 100.0}}, "Largest forward difference that is accepted.");
-  v(p.y_abs_accept, "y_abs_accept", {0.11, "m", {0.0, 100.0}}, "Largest sideways difference that is accepted.");
-  v(p.theta_abs_accept, "theta_abs_accept", {0.07, "rad", {0.0, 3.15}},
-    "Largest difference in heading that is accepted.");
+  v(p.x_min_accept, "x_min_accept", {-1.0, "m", {-100.0, 100.0}},
+    "Least forward difference, match minus odometry, that is accepted.")
+      .documented(-0.05, "@gates_doc");
+  v(p.x_max_accept, "x_max_accept", {1.0, "m", {-100.0, 100.0}}, "Largest forward difference that is accepted.")
+      .documented(0.12, "As x_min_accept.");
+  v(p.y_abs_accept, "y_abs_accept", {1.0, "m", {0.0, 100.0}}, "Largest sideways difference that is accepted.")
+      .documented(0.11, "As x_min_accept.");
+  v(p.theta_abs_accept, "theta_abs_accept", {1.0, "rad", {0.0, 3.15}},
+    "Largest difference in heading that is accepted.")
+      .documented(0.07, "As x_min_accept.");
   v(p.min_accept_score, "min_accept_score", {0.45, "fraction", {0.0, 1.0}}, "Least share of hits that is accepted.");
 }
 
@@ -89,8 +91,9 @@ void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {
   v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").later();
   declare_debug_viewer(v.section("debug_viewer", ParameterStatus::kLater), p.debug_viewer);
   declare_search(v, p);
-  v(p.scanmatch_cov_scale, "scanmatch_cov_scale", {5.0, "", {0.001, 1e6}},
-    "Factor on the standard deviations of the match's covariance.");
+  v(p.scanmatch_cov_scale, "scanmatch_cov_scale", {1.0, "", {0.001, 1e6}},
+    "Factor on the standard deviations of the match's covariance.")
+      .documented(5.0, "@covscale5");
   v(p.inflate_scanmatch_cov_scale, "inflate_scanmatch_cov_scale", {40.0, "", {0.001, 1e6}},
     "Takes the place of scanmatch_cov_scale for the first link after resume_from_paused.");
   v(p.resume_scanmatch_cov_scale, "resume_scanmatch_cov_scale", {50.0, "", {0.001, 1e6}},
@@ -109,11 +112,11 @@ void declare_incremental(const Section& v, IncrementalGraphBuilderParameters& p)
   v(p.odom_cov_tt, "odom_cov_tt", {0.01, "rad^2", {1e-9, 1e4}},
     "Variance of the heading of a link from odometry alone.");
   v(p.match_every_scan, "match_every_scan", true, "Whether scans between two nodes are matched too.")
-      .own(false, "Scans between nodes are then located by the matcher instead of by odometry.");
+      .own(false, "@everyscan_off");
   v(p.odometry_model, "odometry_model", {"motion", {"motion", "constant"}},
     "How uncertain odometry is: motion, growing as odometry_noise says; constant, std_mot_model for the matcher and "
     "odom_cov_* for links.")
-      .own("constant", "A link's weight follows from how far the robot moved.");
+      .own("constant", "@odomodel_const");
   declare_odometry_noise(v.section("odometry_noise"), p.odometry_noise);
   v(p.scanmatcher, "scanmatcher", {"frsm_matcher", {"frsm_matcher"}, {"cartographer_matcher"}},
     "The matcher that links consecutive nodes.");

@@ -7,8 +7,9 @@ namespace oort {
 namespace {
 
 void declare_candidate_search(const Section& v, CandidateSearchParameters& p) {
-  v(p.knearest_neighbors, "knearest_neighbors", {5, "nodes", {0, 1000}},
-    "Nearest nodes tried as candidates: more cost more and close more loops.");
+  v(p.knearest_neighbors, "knearest_neighbors", {2, "nodes", {0, 1000}},
+    "Nearest nodes tried as candidates: more cost more and close more loops.")
+      .documented(5, "@knn5");
   v(p.submap_neighborhood_size, "submap_neighborhood_size", {15, "nodes", {1, 10000}},
     "Nodes along the candidate's chain that make its submap; nodes within half as many hops are no further "
     "candidates.");
@@ -20,9 +21,9 @@ void declare_candidate_search(const Section& v, CandidateSearchParameters& p) {
   v(p.max_candidate_distance, "max_candidate_distance", {4.0, "m", {0.0, 1000.0}},
     "Nodes farther away are no candidates; 0: no limit.")
       .own(0.0, "Scans of nodes far apart overlap little: they cost time and close no loop.");
-  v(p.candidate_stride, "candidate_stride", {4, "nodes", {1, 1000}},
+  v(p.candidate_stride, "candidate_stride", {8, "nodes", {1, 1000}},
     "Every how many-th node of a chain may be a candidate: fewer submaps are drawn.")
-      .own(1, "The neighbourhood of a node and that of the next are nearly the same submap.");
+      .own(1, "@stride1");
 }
 
 void declare_match_filter(const Section& v, MatchFilterParameters& p) {

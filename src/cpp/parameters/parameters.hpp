@@ -83,7 +83,6 @@ struct FrsmMatcherParameters {
   double std_mot_model;
   double key_scan_distance;
   double key_scan_angle;
-  std::string line_profile;
   double max_point_range;
   double information_scale;
   double scanmatch_cov_scale;

@@ -3,6 +3,7 @@
 """The events file: the service calls of a drive, so that it can be replayed."""
 
 import json
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -42,8 +43,8 @@ def _event(path: str | Path, number: int, entry: Any) -> Event:
     if not isinstance(entry, dict) or not {"t", "call"} <= entry.keys() <= {"t", "call", "args"}:
         raise InputError(f'{where}: expected an object with "t", "call" and maybe "args", got {json.dumps(entry)}')
     t, call, args = entry["t"], entry["call"], entry.get("args", [])
-    if isinstance(t, bool) or not isinstance(t, int | float):
-        raise InputError(f'{where}: "t" must be a number of seconds, got {json.dumps(t)}')
+    if isinstance(t, bool) or not isinstance(t, int | float) or not abs(t) <= sys.float_info.max:
+        raise InputError(f'{where}: "t" must be a finite number of seconds, got {json.dumps(t)}')
     if not isinstance(call, str) or not isinstance(args, list):
         raise InputError(f'{where}: "call" must be a string and "args" a list')
     return Event(float(t), call, args)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Named places of a map: namespaces, prefixes and checks. The poses themselves live in the mapper and move with it."""
 
+import itertools
 import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,7 +38,7 @@ class Locations:
 
         Returns the id, which is made up when it was empty.
         """
-        request = _Request(name_space, id or str(uuid.uuid5(uuid.NAMESPACE_OID, f"{name_space}/{self._count()}")))
+        request = _Request(name_space, id or self._new_id(name_space))
         if self._mapper.has_pose:
             self._mapper.create_location(request.name_space, request.id, self._mapper.sensor_pose)
         else:
@@ -96,11 +97,20 @@ class Locations:
         return self._mapper.delete_location(name_space, id) or was_waiting
 
     def clear(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
-        """Removes the places that list_ids() would give, and returns them."""
+        """Removes the places that list_ids() would give, and returns them; waiting ones are given up."""
         doomed = self.list_ids(name_space, use_as_prefix)
         for space, id in doomed:
             self._mapper.delete_location(space, id)
+        self._waiting = [
+            r
+            for r in self._waiting
+            if r.name_space != name_space and not (use_as_prefix and r.name_space.startswith(name_space))
+        ]
         return doomed
 
-    def _count(self) -> int:
-        return len(self._mapper.locations) + len(self._waiting)
+    def _new_id(self, name_space: str) -> str:
+        """An id that no place of the namespace has: the same one for the same calls."""
+        taken = {id for space, id, *_ in self._mapper.locations if space == name_space}
+        taken.update(r.id for r in self._waiting if r.name_space == name_space)
+        ids = (str(uuid.uuid5(uuid.NAMESPACE_OID, f"{name_space}/{number}")) for number in itertools.count())
+        return next(id for id in ids if id not in taken)

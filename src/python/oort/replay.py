@@ -124,6 +124,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("input", help="the recording")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
+    parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
     parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>)")
     parser.add_argument("--map", metavar="BASE", help="base path of the saved map (default: DIR/map)")
@@ -140,7 +141,9 @@ def _parser() -> argparse.ArgumentParser:
 def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
     events = read_events(args.events) if args.events else []
-    recording = open_recording(args.input, scan_topic=args.scan_topic, max_range=args.max_range)
+    recording = open_recording(
+        args.input, scan_topic=args.scan_topic, odom_frame=args.odom_frame, max_range=args.max_range
+    )
     out = Path(args.out) if args.out else Path("oort-out") / recording.name
     options = ReplayOptions(
         map_path=args.map or str(out.absolute() / "map"),

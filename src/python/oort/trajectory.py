@@ -58,11 +58,13 @@ class TrajectoryRecorder:
         return self._carry(base, nodes)
 
     def _progress(self, nodes: NDArray[np.int64]) -> NDArray[np.float64]:
-        """How far each scan is on the way from the scan of its node to that of the next, in [0, 1)."""
+        """How far each scan is on the way from the scan of its node to that of the next, in [0, 1]."""
         progress = np.zeros(len(nodes))
-        made = np.flatnonzero(self._made_node)
-        for before, after in itertools.pairwise(made):
-            progress[before:after] = np.arange(after - before) / (after - before)
+        first = np.flatnonzero((np.diff(nodes, prepend=_NO_NODE) != 0) & (nodes != _NO_NODE))  # carried by each node
+        # A node that a call made is the scan before the first that it carries.
+        made = first - ~np.array(self._made_node, dtype=np.bool_)[first]
+        for (before, begin), (after, end) in itertools.pairwise(zip(made, first, strict=True)):
+            progress[begin:end] = (np.arange(begin, end) - before) / (after - before)
         return progress
 
     def _carry(self, base: NDArray[np.float64], nodes: NDArray[np.int64]) -> NDArray[np.float64]:

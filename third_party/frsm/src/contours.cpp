@@ -19,7 +19,7 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 struct Link {
   std::size_t to = kNone;
-  double length = -1.0;  // an absent link counts as a short one
+  double length = 0.0;
   bool taken() const { return to != kNone; }
 };
 
@@ -75,17 +75,20 @@ class Linker {
     if (partner != kNone) queue_.emplace(best, p, partner);
   }
 
-  // A long link must continue the spacing of the links beside it: walls seen at a grazing angle do, gaps do not.
+  // A long link must continue the spacing of the links beside it: walls seen at a grazing angle do, gaps do not. At the
+  // end of a chain one side is enough, or the sparse far end of a corridor would fall apart into dots.
   bool acceptable(double length, const Link& before, const Link& after) const {
     if (length <= params_.always_okay_distance) return true;
-    for (const Link& beside : {before, after}) {
-      if (beside.length > params_.min_distance_for_ratio) {
-        if (length / beside.length > params_.max_distance_ratio) return false;
-      } else if (length > params_.max_distance_without_ratio) {
-        return false;
-      }
+    if (!before.taken() && !after.taken()) {
+      return length <= std::min(params_.max_first_distance, params_.max_distance_without_ratio);
     }
-    return before.taken() || after.taken() || length <= params_.max_first_distance;
+    return continues(length, before) && continues(length, after);
+  }
+
+  bool continues(double length, const Link& beside) const {
+    if (!beside.taken()) return true;
+    if (beside.length < params_.min_distance_for_ratio) return length <= params_.max_distance_without_ratio;
+    return length <= params_.max_distance_ratio * beside.length;
   }
 
   std::vector<Contour> chains() const {

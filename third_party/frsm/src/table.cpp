@@ -101,8 +101,8 @@ double Table::interpolate(double x, double y, double* dx, double* dy) const {
   const double u = x * inverse_cell_ - x0_;  // in cells of the rectangle
   const double v = y * inverse_cell_ - y0_;
   if (!(u >= 0.5 && v >= 0.5 && u < width_ - 1.5 && v < height_ - 1.5)) return 0.0;
-  const int column = static_cast<int>(u + 0.5);
-  const int row = static_cast<int>(v + 0.5);
+  const int column = floor_to_int(u + 0.5);
+  const int row = floor_to_int(v + 0.5);
   const double fx = u - column;  // -0.5..0.5
   const double fy = v - row;
   const double wx[3] = {0.5 * (0.5 - fx) * (0.5 - fx), 0.75 - fx * fx, 0.5 * (0.5 + fx) * (0.5 + fx)};

@@ -38,7 +38,6 @@ TEST(Contours, EvenSpacing) {
   EXPECT_EQ(extract_contours(line(12, 0.3), ContourParams::sick()).size(), 1U);
 }
 
-// A link beyond 0.4 m needs links of like length on both sides.
 TEST(Contours, WideGapIsBridgedWhereTheSpacingGrowsTowardsIt) {
   const auto chains = [](const std::vector<double>& gaps) {
     Points points{{1.0, 1.0}};
@@ -47,7 +46,8 @@ TEST(Contours, WideGapIsBridgedWhereTheSpacingGrowsTowardsIt) {
   };
   EXPECT_EQ(chains({0.1, 0.2, 0.3, 0.45, 0.3, 0.2, 0.1}), 1U);
   EXPECT_EQ(chains({0.1, 0.1, 0.1, 0.45, 0.1, 0.1, 0.1}), 2U);
-  EXPECT_EQ(chains({0.1, 0.2, 0.3, 0.45}), 2U);
+  EXPECT_EQ(chains({0.15, 0.2, 0.3, 0.45, 0.7}), 1U);
+  EXPECT_EQ(chains({0.15, 0.2, 0.3, 0.6}), 2U);
 }
 
 TEST(Contours, OutlierStaysAloneAndLeavesTheWallWhole) {

@@ -42,7 +42,7 @@ void draw_scan(Table* table, const Pose& pose, unsigned seed) {
 }
 
 TEST(Kernel, HasTheDocumentedValues) {
-  const std::vector<std::pair<double, std::vector<int>>> expected = {{0.01, {255, 220, 190, 163, 141, 122, 105, 90}},
+  const std::vector<std::pair<double, std::vector<int>>> expected = {{0.01, {255, 220, 190, 164, 141, 122, 105, 90}},
                                                                      {0.02, {255, 190, 141, 105, 78, 58, 43, 32, 0}},
                                                                      {0.05, {255, 122, 58, 28, 0}}};
   for (const auto& [cell, values] : expected) {

@@ -57,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _summary(drive: Drive) -> str:
     rooms = Counter(room.kind for room in drive.home.rooms)
-    named = ", ".join(f"{count} {kind}s" if count > 1 else kind for kind, count in sorted(rooms.items()))
+    named = ", ".join(f"{count} x {kind}" if count > 1 else kind for kind, count in sorted(rooms.items()))
     distance, heading = drive.odometry_error_at_end
     return (
         f"{len(drive.home.rooms)} rooms ({named}), {drive.home.area:.0f} m2\n"

@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every parameter that the table calls used does change what comes of a drive."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pytest
+
+from oort import Map, Parameters, Session, render_map
+from oort._core import Mapper, ParameterEntry
+from oort.errors import ParameterError
+from oort.parameters import parameter_table
+from oort.recording import Scan, open_recording
+from oort.simulate import SimulationConfig, simulate_drive
+from oort.simulate.writers import write_carmen
+
+OF_THE_NODE = {"base_frame", "odom_frame", "sensor_frame", "map_frame"}
+"""Names for the ROS node alone."""
+
+SETTINGS: tuple[dict[str, str | float | bool], ...] = (
+    {},
+    {
+        "incremental_graph_builder.odometry_model": "constant",
+        "output_map.speckle_strategy": "morphological",
+        "loop_closure_graph_builder.candidate_search.closest_allowed_id_threshold_large": 100_000,
+    },
+)
+"""A parameter need not count in each of these, but in one."""
+
+USED = [
+    entry
+    for entry in parameter_table()
+    if entry.status == "used" and entry.path not in OF_THE_NODE and (entry.choices == [] or len(entry.choices) > 1)
+]
+
+
+@pytest.fixture(scope="module")
+def scans(tmp_path_factory: pytest.TempPathFactory) -> list[Scan]:
+    """A drive through a small home and back onto the dock, every other scan."""
+    path = tmp_path_factory.mktemp("drive") / "home.clf"
+    write_carmen(simulate_drive(2, SimulationConfig(minutes=0.0, odometry_error=1.5)), path)
+    return list(open_recording(path).scans())[::2]
+
+
+def others(entry: ParameterEntry) -> Iterator[bool | int | float | str]:
+    """Other values than the default, mild ones first."""
+    if isinstance(entry.default, bool):
+        yield not entry.default
+    elif isinstance(entry.default, str):
+        yield from (choice for choice in entry.choices if choice != entry.default)
+    elif isinstance(entry.default, int):
+        assert entry.min is not None
+        assert entry.max is not None
+        yield from (value for value in (entry.default + 2, entry.default // 2, int(entry.min), int(entry.max)))
+    else:
+        assert entry.min is not None
+        assert entry.max is not None
+        middle = entry.default if entry.default > 0.0 else 0.5
+        yield from (0.3 * middle, min(3.0 * middle, entry.max), entry.min, entry.max)
+
+
+def map_of(parameters: Parameters, scans: Sequence[Scan]) -> Map:
+    """A drive with a dock, a pause in the middle, and a second session along the first part."""
+    session = Session(parameters, (0.109, 0.0, 0.0))
+    session.start()
+    for number, scan in enumerate(scans):
+        if number == len(scans) // 2:
+            session.pause()
+            session.resume_from_paused()
+        session.add_scan(scan)
+        if number == 3:
+            session.create_location("dock", "dock")
+    session.notify_docked()
+    mapper = Mapper(parameters, (0.109, 0.0, 0.0))
+    mapper.set_map(session.map)
+    mapper.begin_session((0.1, 0.05, 0.05))
+    for s in scans[:100]:
+        mapper.add_scan(s.time, s.angle_min, s.angle_increment, s.range_min, s.range_max, s.ranges, s.odometry)
+    mapper.finish()
+    return mapper.map()
+
+
+def digest(parameters: Parameters, scans: Sequence[Scan]) -> str:
+    """Of all that the engine makes of the drive."""
+    map_ = map_of(parameters, scans)
+    arrays = [map_.node_poses, map_.edges["covariance"], map_.switchable_edges["switch"]]
+    for grid in render_map(map_, parameters):
+        arrays += [grid.cells, np.array(grid.origin)]
+    return hashlib.sha256(b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)).hexdigest()
+
+
+@pytest.fixture(scope="module")
+def reference(scans: list[Scan]) -> list[str]:
+    return [digest(with_settings(settings), scans) for settings in SETTINGS]
+
+
+def with_settings(settings: dict[str, str | float | bool]) -> Parameters:
+    parameters = Parameters()
+    for path, value in settings.items():
+        parameters.set(path, value)
+    return parameters
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("entry", USED, ids=lambda entry: entry.path)
+def test_parameter_has_an_effect(entry: ParameterEntry, scans: list[Scan], reference: list[str]) -> None:
+    for settings, before in zip(SETTINGS, reference, strict=True):
+        if entry.path in settings:
+            continue
+        for value in others(entry):
+            parameters = with_settings(settings)
+            try:
+                parameters.set(entry.path, value)
+                Session(parameters)
+            except ParameterError:  # out of its range, or against another one
+                continue
+            if digest(parameters, scans) != before:
+                return
+    pytest.fail(f"{entry.path}: no other value made a difference")
