@@ -55,8 +55,7 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   tracked.information = match.information;
   tracked.covariance = match.covariance;
   tracked.hit_fraction = match.hit_fraction;
-  // On the border of the search, but with most points on the map, the pose is still better than odometry's.
-  tracked.usable = match.usable() || (match.saturated && match.hit_fraction >= tracker_.params().retry_hits);
+  tracked.usable = tracker_.matched();
   tracked.status = frsm::to_string(match.status);
   return tracked;
 }

@@ -15,8 +15,9 @@ void declare_general(const Section& v, Parameters& p) {
   v(p.angular_update, "angular_update", {0.6, "rad", {0.001, 3.15}},
     "A new node is made once the base turned this far.");
   v(p.min_pointcloud_size, "min_pointcloud_size", {3, "points", {1, 100000}}, "Scans with fewer returns are skipped.");
-  v(p.switchable_constraint_scale, "switchable_constraint_scale", {2.0, "", {1e-6, 1e6}},
-    "Weight of the squared pull of a loop closure's switch towards on: the larger, the harder it is switched off.");
+  v(p.switchable_constraint_scale, "switchable_constraint_scale", {10.0, "", {1e-6, 1e6}},
+    "Weight of the squared pull of a loop closure's switch towards on: the larger, the harder it is switched off.")
+      .documented(2.0, "@phi10");
 }
 
 void declare_dock(const Section& v, DockGraphBuilderParameters& p) {
