@@ -75,7 +75,7 @@ def test_both_conventions_give_the_same_cost(tmp_path: Path) -> None:
     [np.zeros((3, 3)), np.diag([1.0, -1.0, 1.0]), np.full((3, 3), np.nan)],
     ids=["zero", "negative", "nan"],
 )
-def test_unusable_covariances_are_refused(tmp_path: Path, covariance: NDArray[np.float64]) -> None:
+def test_unusable_covariances_are_refused(tmp_path: Path, covariance: np.ndarray) -> None:
     with pytest.raises(InputError, match="edge 3 -> 5: covariance must be finite and positive definite"):
         write_g2o(tmp_path / "a.g2o", graph(covariance))
 

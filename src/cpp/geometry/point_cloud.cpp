@@ -9,6 +9,15 @@
 #include "oort/geometry/errors.hpp"
 
 namespace oort {
+namespace {
+
+// Volatile, because GCC 12 drops a rounding to float32 and back where it vectorises the two coordinates (-O2 and up).
+double round_to_float32(double value) {
+  const volatile float rounded = static_cast<float>(value);
+  return rounded;
+}
+
+}  // namespace
 
 PointCloud to_point_cloud(const LaserScan& scan) {
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || std::isnan(scan.range_min) ||
@@ -29,7 +38,7 @@ PointCloud to_point_cloud(const LaserScan& scan) {
       continue;
     }
     const bool is_return = range >= scan.range_min && range < scan.range_max;
-    cloud.points.push_back({static_cast<float>(range * std::cos(bearing)), static_cast<float>(range * std::sin(bearing)),
+    cloud.points.push_back({round_to_float32(range * std::cos(bearing)), round_to_float32(range * std::sin(bearing)),
                             is_return ? 1.0 : kNan});
   }
   return cloud;

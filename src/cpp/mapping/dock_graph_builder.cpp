@@ -17,7 +17,8 @@ std::vector<std::uint64_t> reference_nodes(const Chains& chains, std::uint64_t d
   const bool shared = chains.same_segment(dock, query);
   std::vector<std::uint64_t> nodes;
   const auto take = [&](std::uint64_t node) {
-    if (nodes.size() < size && chains.is_matched(node) && !(shared && node >= query_begin && node <= query)) nodes.push_back(node);
+    if (nodes.size() < size && chains.is_matched(node) && !(shared && node >= query_begin && node <= query))
+      nodes.push_back(node);
   };
   for (std::uint64_t node = dock; node < chains.segment_end(dock); ++node) take(node);
   for (std::uint64_t node = dock; node > chains.segment_begin(dock); --node) take(node - 1);
@@ -76,8 +77,8 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   for (std::uint64_t node = first; node <= query; ++node) {
     if (chains.is_matched(node) || node == query) query_nodes.push_back(node);
   }
-  const std::vector<std::uint64_t> reference = reference_nodes(
-      chains, dock.node, static_cast<std::uint64_t>(parameters_.dock_submap_size), first, query);
+  const std::vector<std::uint64_t> reference =
+      reference_nodes(chains, dock.node, static_cast<std::uint64_t>(parameters_.dock_submap_size), first, query);
   if (reference.empty()) {
     reason = "no_reference";
     return std::nullopt;
@@ -85,10 +86,10 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
 
   // The robot touches the contacts somewhere along their size, and the dock may have been moved.
   const double reach = parameters_.dock_contacts_size + parameters_.dock_max_translation;
-  const frsm::Prior prior{to_frsm(dock.T_node_dock),
-                          Eigen::Vector3d(reach * reach, reach * reach,
-                                          parameters_.search_window_theta * parameters_.search_window_theta)
-                              .asDiagonal()};
+  const frsm::Prior prior{
+      to_frsm(dock.T_node_dock),
+      Eigen::Vector3d(reach * reach, reach * reach, parameters_.search_window_theta * parameters_.search_window_theta)
+          .asDiagonal()};
   const auto submap = draw_submap(map, chains, dock.node, reference, table_, contours_);
   const frsm::Match match = matcher_.match(*submap, gather_points(map, chains, query, query_nodes), prior.mean,
                                            {reach, reach, parameters_.search_window_theta}, &prior);

@@ -45,7 +45,9 @@ IncrementalGraphBuilder::IncrementalGraphBuilder(const Parameters& parameters)
       odometry_model_(odometry_model(parameters_.odometry_noise)),
       tracker_(tracker_params(parameters_.frsm_matcher)) {}
 
-void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) { tracker_.reset(to_frsm(T_local_sensor)); }
+void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
+  tracker_.reset(to_frsm(T_local_sensor));
+}
 
 TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor) {
   const frsm::Motion motion{to_frsm(T_previous_sensor), prior_covariance(T_previous_sensor)};
@@ -70,7 +72,9 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   return link;
 }
 
-void IncrementalGraphBuilder::correct(const Pose2& T_local_sensor) { tracker_.set_pose(to_frsm(T_local_sensor)); }
+void IncrementalGraphBuilder::correct(const Pose2& T_local_sensor) {
+  tracker_.set_pose(to_frsm(T_local_sensor));
+}
 
 std::string IncrementalGraphBuilder::refusal(const TrackedScan& node, const Pose2& T_odometry_match) const {
   const MatchFilteringParameters& filter = parameters_.frsm_matcher.match_filtering;

@@ -28,7 +28,9 @@ frsm::Points thinned(const frsm::Points& points) {
   return some;
 }
 
-std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : b - a; }
+std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) {
+  return a > b ? a - b : b - a;
+}
 
 /// What a closure would move: from where the graph expects node `to` to where the match puts it.
 struct Difference {
@@ -90,13 +92,12 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
   const Eigen::Vector2d center = map.graph.nodes[query].pose.translation();
   std::vector<std::pair<double, std::uint64_t>> by_distance;
   for (const Node& node : map.graph.nodes) {
-    const double distance = (node.pose.translation() - center).norm();
-    const bool in_reach = search.max_candidate_distance <= 0.0 || distance <= search.max_candidate_distance;
     const bool has_submap =
         (node.id - chains.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
-    if (in_reach && has_submap &&
-        id_distance(node.id, query) >= static_cast<std::uint64_t>(search.closest_allowed_id_threshold_small))
-      by_distance.emplace_back(distance, node.id);
+    if (has_submap &&
+        id_distance(node.id, query) >= static_cast<std::uint64_t>(search.closest_allowed_id_threshold_small)) {
+      by_distance.emplace_back((node.pose.translation() - center).norm(), node.id);
+    }
   }
   std::sort(by_distance.begin(), by_distance.end());
   std::vector<std::uint64_t> chosen =
@@ -105,9 +106,9 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
   return nearest(by_distance, chains, query, static_cast<std::uint64_t>(search.closest_allowed_id_threshold_small));
 }
 
-std::vector<std::uint64_t> LoopClosureBuilder::nearest(
-    const std::vector<std::pair<double, std::uint64_t>>& by_distance, const Chains& chains, std::uint64_t query,
-    std::uint64_t min_id_distance) const {
+std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pair<double, std::uint64_t>>& by_distance,
+                                                       const Chains& chains, std::uint64_t query,
+                                                       std::uint64_t min_id_distance) const {
   const CandidateSearchParameters& search = parameters_.candidate_search;
   const auto hops = std::max<std::uint64_t>((static_cast<std::uint64_t>(search.submap_neighborhood_size) + 1) / 2, 1);
   std::vector<std::uint64_t> chosen;
@@ -136,13 +137,12 @@ std::optional<Closure> LoopClosureBuilder::match(const Map& map, const Chains& c
   }
   const Pose2 T_candidate_query = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
-  const frsm::Prior prior{to_frsm(T_candidate_query),
-                          Eigen::Vector3d(p.search_window_xy * p.search_window_xy,
-                                          p.search_window_xy * p.search_window_xy,
-                                          p.search_window_theta * p.search_window_theta)
-                              .asDiagonal()};
+  const frsm::Prior prior{to_frsm(T_candidate_query), Eigen::Vector3d(p.search_window_xy * p.search_window_xy,
+                                                                      p.search_window_xy * p.search_window_xy,
+                                                                      p.search_window_theta * p.search_window_theta)
+                                                          .asDiagonal()};
   const frsm::Match rough = matcher_.match(*submap, thinned(query_points), prior.mean,
-                                         {p.search_window_xy, p.search_window_xy, p.search_window_theta}, &prior);
+                                           {p.search_window_xy, p.search_window_xy, p.search_window_theta}, &prior);
   if (rough.hit_fraction < p.rough_match_hitpct_threshold) {
     reason = "rough_hits";
     return std::nullopt;
@@ -157,7 +157,7 @@ std::optional<Closure> LoopClosureBuilder::match(const Map& map, const Chains& c
   }
   const double fine_xy = kFineCells * table_.cell;
   const frsm::Match fine = matcher_.match(*submap, query_points, rough.pose,
-                                       {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
+                                          {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
   if (fine.hit_fraction < p.fine_match_hitpct_threshold) {
     reason = "fine_hits";
     return std::nullopt;

@@ -13,9 +13,9 @@ namespace oort {
 
 /// How a node was linked to the one before it on its chain (the map file's IncrGraphResult).
 struct IncrementalResult {
-  std::uint64_t id = 0;      ///< the node
-  std::uint64_t target = 0;  ///< the node before it; itself for the first of a chain
-  Pose2 T_local_id;          ///< the node's pose in the scan matcher's own frame ("smTid")
+  std::uint64_t id = 0;                                  ///< the node
+  std::uint64_t target = 0;                              ///< the node before it; itself for the first of a chain
+  Pose2 T_local_id;                                      ///< the node's pose in the scan matcher's own frame ("smTid")
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_local_id
   Pose2 T_target_id;
   double hit_fraction = 0.0;  ///< hits / returns of the node's cloud, in [0, 1]

@@ -78,8 +78,7 @@ bool Mapper::notify_docked() {
     throw StateError("notify_docked: no scan has been taken yet, so there is nothing to link; drive and scan first");
   }
   std::uint64_t query = map_.graph.nodes.back().id;
-  const bool has_points =
-      count_returns(last_scan_->cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
+  const bool has_points = count_returns(last_scan_->cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
   if (!last_scan_->is_node && has_points) {
     if (!last_scan_->was_tracked) track(*last_scan_);
     query = make_node(*last_scan_);
@@ -193,8 +192,8 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
 bool Mapper::link_to_chain(LastScan& scan, Node& node) {
   const Node& previous = map_.graph.nodes.back();
   const Pose2 T_previous_node = between(T_odom_sensor_node_, scan.T_odom_sensor);
-  const MatchLink match =
-      incremental_.link(chains_.local_pose(anchor_.node), between(anchor_.T_odom_sensor, scan.T_odom_sensor), scan.tracked);
+  const MatchLink match = incremental_.link(chains_.local_pose(anchor_.node),
+                                            between(anchor_.T_odom_sensor, scan.T_odom_sensor), scan.tracked);
   const bool believed = match.refusal.empty();
   const auto add_edge = [&](std::uint64_t from, const Pose2& pose, const Eigen::Matrix3d& covariance,
                             ConstraintType type) {
@@ -202,7 +201,8 @@ bool Mapper::link_to_chain(LastScan& scan, Node& node) {
   };
   // What is matched after a gap says where the node is from before the gap, not from the nodes within.
   if (!believed || anchor_.node != previous.id) {
-    add_edge(previous.id, T_previous_node, incremental_.odometry_covariance(T_previous_node), ConstraintType::kOdometry);
+    add_edge(previous.id, T_previous_node, incremental_.odometry_covariance(T_previous_node),
+             ConstraintType::kOdometry);
   }
   if (believed) {
     add_edge(anchor_.node, match.T_anchor_node, match.covariance, ConstraintType::kLaser);
@@ -223,10 +223,12 @@ bool Mapper::link_to_chain(LastScan& scan, Node& node) {
 
 void Mapper::link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,
                           double time) {
-  map_.graph.edges.push_back({next_edge_id_++, target, node.id,
-                              {time, node.id, T_target_node,
-                               kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity(),
-                               ConstraintType::kOdometry}});
+  map_.graph.edges.push_back(
+      {next_edge_id_++,
+       target,
+       node.id,
+       {time, node.id, T_target_node, kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity(),
+        ConstraintType::kOdometry}});
 }
 
 void Mapper::close_loops(std::uint64_t node) {
@@ -241,12 +243,13 @@ double Mapper::add_closure(const Closure& closure) {
   const Pose2 expected = between(map_.graph.nodes[closure.from].pose, map_.graph.nodes[closure.to].pose);
   const Eigen::Vector3d error(expected.x - closure.T_from_to.x, expected.y - closure.T_from_to.y,
                               wrap_angle(expected.theta - closure.T_from_to.theta));
-  map_.graph.switchable_edges.push_back({next_edge_id_++, closure.from, closure.to,
-                                         {map_.clouds[closure.from].time, closure.from, closure.T_from_to,
-                                          closure.covariance, ConstraintType::kLaser},
-                                         1.0});
-  map_.loop_results.push_back(
-      {closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
+  map_.graph.switchable_edges.push_back(
+      {next_edge_id_++,
+       closure.from,
+       closure.to,
+       {map_.clouds[closure.from].time, closure.from, closure.T_from_to, closure.covariance, ConstraintType::kLaser},
+       1.0});
+  map_.loop_results.push_back({closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
   ++pending_closures_;
   return error.dot(closure.covariance.ldlt().solve(error));
 }

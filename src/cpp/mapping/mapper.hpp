@@ -101,8 +101,7 @@ class Mapper {
   void carry(LastScan& scan) const;
   std::uint64_t make_node(LastScan& scan);
   bool link_to_chain(LastScan& scan, Node& node);
-  void link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,
-                    double time);
+  void link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node, double time);
   void close_loops(std::uint64_t node);
   double add_closure(const Closure& closure);
   void solve_if_worthwhile(double surprise);

@@ -25,7 +25,9 @@ void put(std::vector<Location>& locations, Location location) {
 
 }  // namespace
 
-bool Mapper::has_pose() const { return last_scan_.has_value() && next_link_ == NextLink::kChain; }
+bool Mapper::has_pose() const {
+  return last_scan_.has_value() && next_link_ == NextLink::kChain;
+}
 
 Pose2 Mapper::sensor_pose() const {
   if (!has_pose()) throw StateError("no pose of the sensor is known: no scan has been mapped yet");
@@ -33,11 +35,13 @@ Pose2 Mapper::sensor_pose() const {
   return node.pose * between(chains_.local_pose(node.id), last_scan_->tracked.T_local_sensor);
 }
 
-Pose2 Mapper::T_map_odom() const { return sensor_pose() * inverse(last_scan_->T_odom_sensor); }
+Pose2 Mapper::T_map_odom() const {
+  return sensor_pose() * inverse(last_scan_->T_odom_sensor);
+}
 
 std::uint64_t Mapper::nearest_node(const Eigen::Vector2d& p_map) const {
-  const auto nearest = std::min_element(
-      map_.graph.nodes.begin(), map_.graph.nodes.end(), [&](const Node& a, const Node& b) {
+  const auto nearest =
+      std::min_element(map_.graph.nodes.begin(), map_.graph.nodes.end(), [&](const Node& a, const Node& b) {
         return (a.pose.translation() - p_map).squaredNorm() < (b.pose.translation() - p_map).squaredNorm();
       });
   if (nearest == map_.graph.nodes.end()) throw StateError("the map has no nodes yet: map something first");
@@ -61,8 +65,8 @@ void Mapper::create_points(const std::vector<std::string>& name_spaces, const st
   if (!centroid.allFinite()) throw InputError("create_points: a point is not finite");
   const std::uint64_t node = nearest_node(centroid);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    put(map_.locations, {name_spaces[i], ids[i], node,
-                         between(map_.graph.nodes[node].pose, Pose2{points[i].x(), points[i].y(), 0.0})});
+    put(map_.locations,
+        {name_spaces[i], ids[i], node, between(map_.graph.nodes[node].pose, Pose2{points[i].x(), points[i].y(), 0.0})});
   }
 }
 

@@ -6,7 +6,9 @@
 
 namespace oort {
 namespace {
-double square(double value) { return value * value; }
+double square(double value) {
+  return value * value;
+}
 }  // namespace
 
 Eigen::Matrix3d OdometryModel::covariance(const Pose2& T_before_after) const {
@@ -14,7 +16,8 @@ Eigen::Matrix3d OdometryModel::covariance(const Pose2& T_before_after) const {
   const double turn = std::abs(T_before_after.theta);
   const double translation =
       square(translation_per_meter) * way + square(translation_per_radian) * turn + square(translation_floor);
-  const double rotation = square(rotation_per_meter) * way + square(rotation_per_radian) * turn + square(rotation_floor);
+  const double rotation =
+      square(rotation_per_meter) * way + square(rotation_per_radian) * turn + square(rotation_floor);
   return Eigen::Vector3d(translation, translation, rotation).asDiagonal();
 }
 

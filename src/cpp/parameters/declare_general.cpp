@@ -17,7 +17,9 @@ void declare_general(const Section& v, Parameters& p) {
   v(p.min_pointcloud_size, "min_pointcloud_size", {3, "points", {1, 100000}}, "Scans with fewer returns are skipped.");
   v(p.switchable_constraint_scale, "switchable_constraint_scale", {10.0, "", {1e-6, 1e6}},
     "Weight of the squared pull of a loop closure's switch towards on: the larger, the harder it is switched off.")
-      .documented(2.0, "@phi10");
+      .documented(
+          2.0,
+          "With readings cut at 3 m, Intel is off by 0.027 m instead of 1.49 m: good closures are not switched off.");
 }
 
 void declare_dock(const Section& v, DockGraphBuilderParameters& p) {

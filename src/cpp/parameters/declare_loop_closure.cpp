@@ -9,7 +9,8 @@ namespace {
 void declare_candidate_search(const Section& v, CandidateSearchParameters& p) {
   v(p.knearest_neighbors, "knearest_neighbors", {2, "nodes", {0, 1000}},
     "Nearest nodes tried as candidates: more cost more and close more loops.")
-      .documented(5, "@knn5");
+      .documented(
+          5, "Costs half the time (Intel 14.6 s instead of 28.1 s) and is as accurate (0.0127 m instead of 0.0149 m).");
   v(p.submap_neighborhood_size, "submap_neighborhood_size", {15, "nodes", {1, 10000}},
     "Nodes along the candidate's chain that make its submap; nodes within half as many hops are no further "
     "candidates.");
@@ -18,12 +19,9 @@ void declare_candidate_search(const Section& v, CandidateSearchParameters& p) {
   v(p.closest_allowed_id_threshold_small, "closest_allowed_id_threshold_small", {5, "nodes", {1, 1000000}},
     "The same, for a second search if the first finds no candidate.");
   v(p.max_dist_allowed_threshold, "max_dist_allowed_threshold", {4.0, "m", {0.0, 1000.0}}, "No effect.").unused();
-  v(p.max_candidate_distance, "max_candidate_distance", {4.0, "m", {0.0, 1000.0}},
-    "Nodes farther away are no candidates; 0: no limit.")
-      .own(0.0, "Scans of nodes far apart overlap little: they cost time and close no loop.");
   v(p.candidate_stride, "candidate_stride", {8, "nodes", {1, 1000}},
     "Every how many-th node of a chain may be a candidate: fewer submaps are drawn.")
-      .own(1, "@stride1");
+      .own(1, "Half the time (Intel 14.6 s instead of 29.4 s) at the same error (0.0127 m, 0.0129 m).");
 }
 
 void declare_match_filter(const Section& v, MatchFilterParameters& p) {
