@@ -117,9 +117,7 @@ TEST_F(CandidatesTest, NeighborhoodsEndWithTheirSegment) {
   for (int k = 0; k < 4; ++k) add(0.0);
   for (int k = 0; k < 4; ++k) add(0.1, k == 0);
   add(0.0, true);
-  EXPECT_EQ(candidates(8), (Ids{0}));  // 4 to 8 are too near by their ids, 1 to 3 are near 0
-  parameters.loop_closure_graph_builder.candidate_search.closest_allowed_id_threshold_small = 1;
-  EXPECT_EQ(candidates(8), (Ids{0, 4}));
+  EXPECT_EQ(candidates(8), (Ids{0, 4}));  // 1 to 3 are near 0, 5 to 7 near 4; ids count within a segment only
 }
 
 TEST_F(CandidatesTest, EquallyNearOnesAreInTheOrderOfTheirIds) {

@@ -27,7 +27,7 @@ double below(double value) {
   return std::nextafter(value, -std::numeric_limits<double>::infinity());
 }
 
-/// A chain of 15 nodes, and as node 15 a query of another chain near node 0, misplaced in the graph.
+/// A chain of 15 nodes, and as node 15 of it a query near node 0, misplaced in the graph.
 class ClosureTest : public ::testing::Test {
  protected:
   ClosureTest() {
@@ -36,6 +36,10 @@ class ClosureTest : public ::testing::Test {
     for (std::size_t k = 0; k < 15; ++k) places.push_back(truth[5 * k]);
     testing::append_chain(world, places, testing::kAllRound, map, chains);
     testing::append_chain(world, {places[kCandidate] * kOffset}, testing::kAllRound, map, chains);
+    Chains one;
+    for (std::uint64_t k = 0; k < kQuery; ++k) one.add(k == 0, true, chains.local_pose(k));
+    one.add(false, true, chains.local_pose(kCandidate) * kOffset);
+    chains = one;
     map.graph.nodes[kQuery].pose = map.graph.nodes[kQuery].pose * kDisplacement;
     loop.candidate_search.knearest_neighbors = 1;
     loop.candidate_search.candidate_stride = 1;

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/storage/check.hpp"
+#include "oort/mapping/map_check.hpp"
 #include "oort/storage/checksum_file.hpp"
 #include "oort/storage/codec.hpp"
 #include "oort/storage/md5.hpp"

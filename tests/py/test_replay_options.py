@@ -119,7 +119,7 @@ def test_calls_after_the_last_scan_are_done_too(files: Path, tmp_path: Path) -> 
     events = write_calls(
         tmp_path / "events.json", [(1e6, "graph_loc/create_points", [["p"], [[0.5, 0.25, 0.0]], ["q"]])]
     )
-    assert run(files / "first.clf", tmp_path, "--until", 5, "--events", events) == 0
+    assert run(files / "first.clf", tmp_path, "--events", events) == 0
     ((name_space, name, *_),) = load_map(str(tmp_path / "map")).locations
     assert (name_space, name) == ("p", "q")
 

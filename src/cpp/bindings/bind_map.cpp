@@ -119,12 +119,6 @@ py::array_t<double> cloud_points(const Map& map, std::size_t k) {
   return result;
 }
 
-/// A file's text need not be UTF-8; what is not becomes U+FFFD instead of an exception.
-py::str to_str(const std::string& text) {
-  return py::reinterpret_steal<py::str>(
-      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
-}
-
 py::list get_locations(const Map& map) {
   py::list result;
   for (const Location& location : map.locations) {
@@ -238,6 +232,11 @@ void bind_rendering(py::module_& m) {
 }
 
 }  // namespace
+
+py::str to_str(const std::string& text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
+}
 
 void bind_map(py::module_& m) {
   bind_map_class(m);

@@ -19,14 +19,21 @@ namespace {
 
 using PoseTuple = std::tuple<double, double, double>;
 
-Pose2 pose_of(const PoseTuple& t) { return {std::get<0>(t), std::get<1>(t), std::get<2>(t)}; }
-PoseTuple tuple_of(const Pose2& p) { return {p.x, p.y, p.theta}; }
+Pose2 pose_of(const PoseTuple& t) {
+  return {std::get<0>(t), std::get<1>(t), std::get<2>(t)};
+}
+PoseTuple tuple_of(const Pose2& p) {
+  return {p.x, p.y, p.theta};
+}
 
 const char* name_of(ScanOutcome outcome) {
   switch (outcome) {
-    case ScanOutcome::kNode: return "node";
-    case ScanOutcome::kCarried: return "carried";
-    case ScanOutcome::kSkipped: return "skipped";
+    case ScanOutcome::kNode:
+      return "node";
+    case ScanOutcome::kCarried:
+      return "carried";
+    case ScanOutcome::kSkipped:
+      return "skipped";
   }
   return "";
 }
@@ -50,6 +57,7 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["loops"] = dict_of(statistics.loops);
   dict["docks"] = dict_of(statistics.docks);
   dict["solves"] = statistics.solves;
+  dict["solves_cut_short"] = statistics.solves_cut_short;
   return dict;
 }
 
@@ -59,10 +67,10 @@ LaserScan scan_of(double time, double angle_min, double angle_increment, double 
           range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
 }
 
-std::vector<std::tuple<std::string, std::string, std::uint64_t, PoseTuple>> locations_of(const Mapper& mapper) {
-  std::vector<std::tuple<std::string, std::string, std::uint64_t, PoseTuple>> list;
+py::list locations_of(const Mapper& mapper) {
+  py::list list;
   for (const Location& l : mapper.map().locations) {
-    list.emplace_back(l.name_space, l.id, l.node_id, tuple_of(l.T_node_location));
+    list.append(py::make_tuple(to_str(l.name_space), to_str(l.id), l.node_id, tuple_of(l.T_node_location)));
   }
   return list;
 }
@@ -72,7 +80,10 @@ void bind_odometry(py::module_& m) {
       .def(py::init<double>(), py::arg("horizon") = 0.0,
            "Poses older than `horizon` [s] before the newest are dropped; 0 keeps all.")
       .def(
-          "add", [](OdometryBuffer& b, double t, double x, double y, double theta) { b.add(t, {x, y, theta}); },
+          "add",
+          [](OdometryBuffer& b, double t, double x, double y, double theta) {
+            b.add(t, {x, y, theta});
+          },
           py::arg("time"), py::arg("x"), py::arg("y"), py::arg("theta"), "Adds T_odom_base at a time [s].")
       .def(
           "lookup",
@@ -87,11 +98,13 @@ void bind_odometry(py::module_& m) {
 
 void bind_scan_result(py::module_& m) {
   py::class_<ScanResult>(m, "ScanResult", "What became of a scan.")
-      .def_property_readonly("outcome", [](const ScanResult& r) { return name_of(r.outcome); },
-                             "\"node\", \"carried\" (located relative to the last node) or \"skipped\" (too few returns)")
+      .def_property_readonly(
+          "outcome", [](const ScanResult& r) { return name_of(r.outcome); },
+          "\"node\", \"carried\" (located relative to the last node) or \"skipped\" (too few returns)")
       .def_readonly("node_id", &ScanResult::node_id, "The node that the pose is relative to, or None.")
-      .def_property_readonly("T_node_sensor", [](const ScanResult& r) { return tuple_of(r.T_node_sensor); },
-                             "The sensor's pose (x, y, theta) seen from the node.")
+      .def_property_readonly(
+          "T_node_sensor", [](const ScanResult& r) { return tuple_of(r.T_node_sensor); },
+          "The sensor's pose (x, y, theta) seen from the node.")
       .def_readonly("hit_fraction", &ScanResult::hit_fraction, "Share of the returns that hit the local map.")
       .def_readonly("status", &ScanResult::status, "What the scan matcher said; empty if it was not asked.");
 }
@@ -102,7 +115,8 @@ void bind_mapping(py::module_& m) {
   bind_odometry(m);
   bind_scan_result(m);
   py::class_<Mapper>(m, "Mapper", "Turns scans with odometry into a map. Not thread-safe.")
-      .def(py::init([](const Parameters& p, const PoseTuple& pose) { return std::make_unique<Mapper>(p, pose_of(pose)); }),
+      .def(py::init(
+               [](const Parameters& p, const PoseTuple& pose) { return std::make_unique<Mapper>(p, pose_of(pose)); }),
            py::arg("parameters"), py::arg("sensor_on_base") = PoseTuple{0.0, 0.0, 0.0})
       .def(
           "add_scan",
@@ -112,49 +126,58 @@ void bind_mapping(py::module_& m) {
             const py::gil_scoped_release release;
             return mapper.add_scan(scan, pose_of(odometry));
           },
-          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"),
-          py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
+          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
+          py::arg("ranges"), py::arg("odometry"),
           "Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then.")
       .def("notify_docked", &Mapper::notify_docked, py::call_guard<py::gil_scoped_release>(),
            "Links the current place to the dock. Whether a closure was found.")
-      .def("begin_session", [](Mapper& mapper, const PoseTuple& pose) { mapper.begin_session(pose_of(pose)); },
-           py::arg("sensor_on_map"), "The next scan begins a new chain at about this pose of the map.")
+      .def(
+          "begin_session", [](Mapper& mapper, const PoseTuple& pose) { mapper.begin_session(pose_of(pose)); },
+          py::arg("sensor_on_map"), "The next scan begins a new chain at about this pose of the map.")
       .def("resume_from_paused", &Mapper::resume_from_paused,
            "The next scan makes a node whose link to the last one is very uncertain.")
       .def("finish", &Mapper::finish, py::call_guard<py::gil_scoped_release>(), "Brings the map to its final solution.")
-      .def("map", [](const Mapper& mapper) { return Map(mapper.map()); }, "A snapshot of the map.")
-      .def("set_map", [](Mapper& mapper, const Map& map) { mapper.set_map(map); }, py::arg("map"),
-           "Replaces everything by a map from elsewhere.")
+      .def(
+          "map", [](const Mapper& mapper) { return Map(mapper.map()); }, "A snapshot of the map.")
+      .def(
+          "set_map", [](Mapper& mapper, const Map& map) { mapper.set_map(map); }, py::arg("map"),
+          "Replaces everything by a map from elsewhere.")
       .def_property_readonly("num_nodes", [](const Mapper& mapper) { return mapper.map().graph.nodes.size(); })
       .def_property_readonly("has_pose", &Mapper::has_pose, "Whether the sensor's pose in the map is known.")
-      .def_property_readonly("sensor_pose", [](const Mapper& mapper) { return tuple_of(mapper.sensor_pose()); },
-                             "The latest scan's T_map_sensor at the current solution.")
-      .def_property_readonly("odom_pose", [](const Mapper& mapper) { return tuple_of(mapper.T_map_odom()); },
-                             "T_map_odom at the current solution.")
-      .def("create_location",
-           [](Mapper& mapper, const std::string& name_space, const std::string& id, const PoseTuple& pose) {
-             mapper.create_location(name_space, id, pose_of(pose));
-           },
-           py::arg("name_space"), py::arg("id"), py::arg("pose"), "Names a pose of the map.")
-      .def("create_points",
-           [](Mapper& mapper, const std::vector<std::string>& name_spaces,
-              const std::vector<std::array<double, 2>>& points, const std::vector<std::string>& ids) {
-             std::vector<Eigen::Vector2d> vectors;
-             for (const auto& p : points) vectors.emplace_back(p[0], p[1]);
-             mapper.create_points(name_spaces, vectors, ids);
-           },
-           py::arg("name_spaces"), py::arg("points"), py::arg("ids"),
-           "Names points of the map, relative to the node nearest to their centroid.")
+      .def_property_readonly(
+          "sensor_pose", [](const Mapper& mapper) { return tuple_of(mapper.sensor_pose()); },
+          "The latest scan's T_map_sensor at the current solution.")
+      .def_property_readonly(
+          "odom_pose", [](const Mapper& mapper) { return tuple_of(mapper.T_map_odom()); },
+          "T_map_odom at the current solution.")
+      .def(
+          "create_location",
+          [](Mapper& mapper, const std::string& name_space, const std::string& id, const PoseTuple& pose) {
+            mapper.create_location(name_space, id, pose_of(pose));
+          },
+          py::arg("name_space"), py::arg("id"), py::arg("pose"), "Names a pose of the map.")
+      .def(
+          "create_points",
+          [](Mapper& mapper, const std::vector<std::string>& name_spaces,
+             const std::vector<std::array<double, 2>>& points, const std::vector<std::string>& ids) {
+            std::vector<Eigen::Vector2d> vectors;
+            for (const auto& p : points) vectors.emplace_back(p[0], p[1]);
+            mapper.create_points(name_spaces, vectors, ids);
+          },
+          py::arg("name_spaces"), py::arg("points"), py::arg("ids"),
+          "Names points of the map, relative to the node nearest to their centroid.")
       .def("delete_location", &Mapper::delete_location, py::arg("name_space"), py::arg("id"))
-      .def("locate",
-           [](const Mapper& mapper, const std::string& name_space, const std::string& id) -> std::optional<PoseTuple> {
-             const auto pose = mapper.locate(name_space, id);
-             return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
-           },
-           py::arg("name_space"), py::arg("id"), "The place's pose in the map now, or None.")
+      .def(
+          "locate",
+          [](const Mapper& mapper, const std::string& name_space, const std::string& id) -> std::optional<PoseTuple> {
+            const auto pose = mapper.locate(name_space, id);
+            return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
+          },
+          py::arg("name_space"), py::arg("id"), "The place's pose in the map now, or None.")
       .def_property_readonly("locations", &locations_of, "(namespace, id, node id, T_node_location) of each place.")
-      .def_property_readonly("statistics", [](const Mapper& mapper) { return dict_of(mapper.statistics()); },
-                             "Counts since the mapper was made.");
+      .def_property_readonly(
+          "statistics", [](const Mapper& mapper) { return dict_of(mapper.statistics()); },
+          "Counts since the mapper was made.");
 }
 
 }  // namespace oort

@@ -3,7 +3,12 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <string>
+
 namespace oort {
+
+/// A file's text need not be UTF-8; what is not becomes U+FFFD instead of an exception.
+pybind11::str to_str(const std::string& text);
 
 void bind_parameters(pybind11::module_& m);
 void bind_map(pybind11::module_& m);

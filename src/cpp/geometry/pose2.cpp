@@ -45,7 +45,9 @@ Pose2 interpolate(const Pose2& from, const Pose2& to, double fraction) {
           wrap_angle(from.theta + fraction * wrap_angle(to.theta - from.theta))};
 }
 
-bool is_finite(const Pose2& pose) { return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.theta); }
+bool is_finite(const Pose2& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.theta);
+}
 
 Eigen::Matrix2d rotation(double theta) {
   const double c = std::cos(theta);

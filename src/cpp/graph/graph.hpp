@@ -19,9 +19,9 @@ enum class ConstraintType { kLaser, kOdometry };
 
 /// What was measured between two nodes.
 struct Constraint {
-  double time = 0.0;                                      ///< stamp of the cloud of node `id` [s]
-  std::uint64_t id = 0;                                   ///< the node it was calculated at (no bearing on direction)
-  Pose2 T_i_j;                                            ///< pose of node j in the frame of node i
+  double time = 0.0;     ///< stamp of the cloud of node `id` [s]
+  std::uint64_t id = 0;  ///< the node it was calculated at (no bearing on direction)
+  Pose2 T_i_j;           ///< pose of node j in the frame of node i
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of T_i_j: x, y, theta along the axes of node i
   ConstraintType type = ConstraintType::kLaser;
 };

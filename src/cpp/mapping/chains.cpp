@@ -28,13 +28,18 @@ Chains Chains::of_map(const Map& map) {
   const std::size_t size = map.graph.nodes.size();
   std::vector<const Edge*> step(size, nullptr);   // from the node before
   std::vector<const Edge*> match(size, nullptr);  // from the last node that was matched
+  std::vector<bool> is_anchor(size, false);
   for (const Edge& edge : map.graph.edges) {
     if (edge.i + 1 == edge.j) step[edge.j] = &edge;
-    if (edge.i < edge.j && edge.constraint.type == ConstraintType::kLaser) match[edge.j] = &edge;
+    if (edge.i < edge.j && edge.constraint.type == ConstraintType::kLaser) {
+      match[edge.j] = &edge;
+      is_anchor[edge.i] = true;
+    }
   }
   Chains chains;
   for (std::uint64_t node = 0; node < size; ++node) {
-    if (step[node] == nullptr && match[node] == nullptr) {
+    // Without a match, but others were matched with it: the first of a new local map.
+    if (match[node] == nullptr && (step[node] == nullptr || is_anchor[node])) {
       chains.add(true, true, Pose2{});
       continue;
     }

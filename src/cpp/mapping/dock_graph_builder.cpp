@@ -85,7 +85,7 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   }
 
   // The robot touches the contacts somewhere along their size, and the dock may have been moved.
-  const double reach = parameters_.dock_contacts_size + parameters_.dock_max_translation;
+  const double reach = std::max(parameters_.dock_contacts_size + parameters_.dock_max_translation, table_.cell);
   const frsm::Prior prior{
       to_frsm(dock.T_node_dock),
       Eigen::Vector3d(reach * reach, reach * reach, parameters_.search_window_theta * parameters_.search_window_theta)
@@ -94,7 +94,9 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   const frsm::Match match = matcher_.match(*submap, gather_points(map, chains, query, query_nodes), prior.mean,
                                            {reach, reach, parameters_.search_window_theta}, &prior);
   const Pose2 T_dock_query = from_frsm(match.pose);
-  if (match.hit_fraction < parameters_.dock_match_min_hit_pct) {
+  if (match.hits == 0) {
+    reason = "no_overlap";
+  } else if (match.hit_fraction < parameters_.dock_match_min_hit_pct) {
     reason = "hits";
   } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
     reason = "distance";

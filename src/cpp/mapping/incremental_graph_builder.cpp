@@ -51,6 +51,7 @@ void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
 
 TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor) {
   const frsm::Motion motion{to_frsm(T_previous_sensor), prior_covariance(T_previous_sensor)};
+  const long restarts = tracker_.restarts();
   const frsm::Match match = tracker_.track(points, time, motion);
   TrackedScan tracked;
   tracked.T_local_sensor = from_frsm(match.pose);
@@ -58,6 +59,7 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   tracked.covariance = match.covariance;
   tracked.hit_fraction = match.hit_fraction;
   tracked.usable = tracker_.matched();
+  tracked.restarted = tracker_.restarts() > restarts;
   tracked.status = frsm::to_string(match.status);
   return tracked;
 }
@@ -102,10 +104,18 @@ Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_befo
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& node, double heading,
                                                           const Eigen::Matrix3d& odometry) const {
-  // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
   const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
-  const Eigen::Matrix3d match = rotate_covariance(node.information, -heading) / (scale * scale);
-  const Eigen::Matrix3d covariance = (match + odometry.inverse()).inverse();
+  Eigen::Matrix3d covariance;
+  if (motion_model_) {
+    // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
+    const Eigen::Matrix3d match = rotate_covariance(node.information, -heading) / (scale * scale);
+    covariance = (match + odometry.inverse()).inverse();
+  } else {
+    // As the original did: the matcher's own covariance, scaled, without its terms between position and heading.
+    covariance = rotate_covariance(node.covariance, -heading) * (scale * scale);
+    covariance.topRightCorner<2, 1>().setZero();
+    covariance.bottomLeftCorner<1, 2>().setZero();
+  }
   return 0.5 * (covariance + covariance.transpose());
 }
 

@@ -19,6 +19,7 @@ struct TrackedScan {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the match and what was expected, same axes
   double hit_fraction = 0.0;
   bool usable = false;
+  bool restarted = false;  ///< a fresh local map begins with this scan: the old one did not fit any more
   std::string status;
 };
 

@@ -32,6 +32,12 @@ std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) {
   return a > b ? a - b : b - a;
 }
 
+/// Whether two nodes follow so closely on one another that the chain links them better than a closure could. Nodes of
+/// other segments never do: nothing tracked the sensor from one to the other.
+bool is_recent(const Chains& chains, std::uint64_t node, std::uint64_t query, int id_threshold) {
+  return chains.same_segment(node, query) && id_distance(node, query) < static_cast<std::uint64_t>(id_threshold);
+}
+
 /// What a closure would move: from where the graph expects node `to` to where the match puts it.
 struct Difference {
   double distance;
@@ -46,7 +52,6 @@ std::string refusal(const MatchFilterParameters& filter, double hits, const Diff
     if (difference.angle >= filter.match_max_ang_diff) return "angle";
     return hits >= filter.close_node_hitpct_threshold ? "" : "close_hits";
   }
-  if (difference.angle >= filter.match_max_ang_diff) return "angle";
   const double needed = is_opposite ? filter.match_hitpct_threshold_opposite_dir : filter.match_hitpct_threshold;
   const double needed_far =
       is_opposite ? filter.match_hitpct_threshold_high_opposite_dir : filter.match_hitpct_threshold_high;
@@ -94,21 +99,20 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
   for (const Node& node : map.graph.nodes) {
     const bool has_submap =
         (node.id - chains.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
-    if (has_submap &&
-        id_distance(node.id, query) >= static_cast<std::uint64_t>(search.closest_allowed_id_threshold_small)) {
+    if (has_submap && node.id != query &&
+        !is_recent(chains, node.id, query, search.closest_allowed_id_threshold_small)) {
       by_distance.emplace_back((node.pose.translation() - center).norm(), node.id);
     }
   }
   std::sort(by_distance.begin(), by_distance.end());
-  std::vector<std::uint64_t> chosen =
-      nearest(by_distance, chains, query, static_cast<std::uint64_t>(search.closest_allowed_id_threshold_large));
+  std::vector<std::uint64_t> chosen = nearest(by_distance, chains, query, search.closest_allowed_id_threshold_large);
   if (!chosen.empty()) return chosen;
-  return nearest(by_distance, chains, query, static_cast<std::uint64_t>(search.closest_allowed_id_threshold_small));
+  return nearest(by_distance, chains, query, search.closest_allowed_id_threshold_small);
 }
 
 std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pair<double, std::uint64_t>>& by_distance,
                                                        const Chains& chains, std::uint64_t query,
-                                                       std::uint64_t min_id_distance) const {
+                                                       int id_threshold) const {
   const CandidateSearchParameters& search = parameters_.candidate_search;
   const auto hops = std::max<std::uint64_t>((static_cast<std::uint64_t>(search.submap_neighborhood_size) + 1) / 2, 1);
   std::vector<std::uint64_t> chosen;
@@ -117,7 +121,7 @@ std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pa
   };
   for (const auto& [distance, node] : by_distance) {
     if (chosen.size() == static_cast<std::size_t>(search.knearest_neighbors)) break;
-    if (id_distance(node, query) < min_id_distance || covered(node, query)) continue;
+    if (is_recent(chains, node, query, id_threshold) || covered(node, query)) continue;
     if (std::none_of(chosen.begin(), chosen.end(), [&](std::uint64_t other) { return covered(node, other); })) {
       chosen.push_back(node);
     }
@@ -143,16 +147,16 @@ std::optional<Closure> LoopClosureBuilder::match(const Map& map, const Chains& c
                                                           .asDiagonal()};
   const frsm::Match rough = matcher_.match(*submap, thinned(query_points), prior.mean,
                                            {p.search_window_xy, p.search_window_xy, p.search_window_theta}, &prior);
+  if (rough.hits == 0) {
+    reason = "no_overlap";
+    return std::nullopt;
+  }
   if (rough.hit_fraction < p.rough_match_hitpct_threshold) {
     reason = "rough_hits";
     return std::nullopt;
   }
   if (rough.saturated) {
     reason = "window_border";
-    return std::nullopt;
-  }
-  if (rough.ambiguity > p.max_ambiguity) {
-    reason = "ambiguous";
     return std::nullopt;
   }
   const double fine_xy = kFineCells * table_.cell;
@@ -165,8 +169,7 @@ std::optional<Closure> LoopClosureBuilder::match(const Map& map, const Chains& c
   const Pose2 T_match = from_frsm(fine.pose);
   const Pose2 moved = between(T_candidate_query, T_match);
   reason = refusal(p.match_filter, fine.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
-                   id_distance(query, candidate) <
-                       static_cast<std::uint64_t>(parameters_.candidate_search.closest_allowed_id_threshold_large),
+                   is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
                    std::abs(T_candidate_query.theta) >= p.match_filter.opposite_dir_threshold);
   if (!reason.empty()) return std::nullopt;
   return Closure{query, candidate, inverse(T_match), inverse_covariance(T_match, fine.covariance), fine.hit_fraction};

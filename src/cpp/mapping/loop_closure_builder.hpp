@@ -40,7 +40,7 @@ class LoopClosureBuilder {
 
  private:
   std::vector<std::uint64_t> nearest(const std::vector<std::pair<double, std::uint64_t>>& by_distance,
-                                     const Chains& chains, std::uint64_t query, std::uint64_t min_id_distance) const;
+                                     const Chains& chains, std::uint64_t query, int id_threshold) const;
   /// Sets `reason` when there is no closure.
   std::optional<Closure> match(const Map& map, const Chains& chains, std::uint64_t query,
                                const frsm::Points& query_points, std::uint64_t candidate, std::string& reason);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/mapping/map_check.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/parameters/table.hpp"
 
@@ -31,6 +32,15 @@ constexpr int kMaxRefusals = 5;
 constexpr int kIterationsWhileMapping = 15;
 constexpr int kFinalIterations = 100;
 
+// Farther off, float coordinates and the matcher's lattice lose their meaning; no robot gets there.
+constexpr double kMaxCoordinate = 1e5;  // [m]
+
+void check_reach(const Pose2& pose, const std::string& what) {
+  if (!is_finite(pose) || std::max(std::abs(pose.x), std::abs(pose.y)) > kMaxCoordinate) {
+    throw InputError(what + " is not finite or more than 100 km off; check where it comes from");
+  }
+}
+
 Parameters checked(const Parameters& parameters) {
   check_parameters(parameters);
   return parameters;
@@ -50,6 +60,10 @@ Mapper::Mapper(const Parameters& parameters, const Pose2& T_base_sensor)
 ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
   if (!is_finite(T_odom_base) || !std::isfinite(scan.time)) {
     throw InputError("scan: its time or odometry pose is not finite; check the transform odom -> base");
+  }
+  check_reach(T_odom_base, "scan: its odometry pose");
+  if (next_link_ == NextLink::kNone && !map_.graph.nodes.empty()) {
+    throw StateError("the map was loaded: call begin_session() before the first scan");
   }
   LastScan now;
   now.cloud = to_point_cloud(scan);
@@ -74,8 +88,8 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
 }
 
 bool Mapper::notify_docked() {
-  if (!last_scan_ || map_.graph.nodes.empty()) {
-    throw StateError("notify_docked: no scan has been taken yet, so there is nothing to link; drive and scan first");
+  if (!has_pose()) {
+    throw StateError("notify_docked: no scan has been mapped yet, so there is nothing to link; drive and scan first");
   }
   std::uint64_t query = map_.graph.nodes.back().id;
   const bool has_points = count_returns(last_scan_->cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
@@ -91,7 +105,7 @@ bool Mapper::notify_docked() {
 }
 
 void Mapper::begin_session(const Pose2& T_map_sensor) {
-  if (!is_finite(T_map_sensor)) throw InputError("the start pose of a session must be finite");
+  check_reach(T_map_sensor, "the start pose of a session");
   T_map_start_ = T_map_sensor;
   next_link_ = map_.graph.nodes.empty() ? NextLink::kNone : NextLink::kSession;
   last_scan_.reset();
@@ -106,6 +120,8 @@ void Mapper::finish() {
 }
 
 void Mapper::set_map(Map map) {
+  const std::optional<std::string> defect = find_defect(map);
+  if (defect) throw InputError("this map cannot be used: " + *defect);
   map_ = std::move(map);
   chains_ = Chains::of_map(map_);
   loops_ = LoopClosureBuilder(parameters_);  // the submaps it remembers are of the old map
@@ -131,10 +147,12 @@ void Mapper::track(LastScan& scan) {
     if (next_link_ == NextLink::kPaused) T_local_start = T_local_sensor_tracked_ * T_previous_sensor;
     if (next_link_ == NextLink::kSession) T_local_start = T_map_start_;
     incremental_.begin(T_local_start);
+    fresh_local_map_ = false;
     T_previous_sensor = Pose2{};
   }
   scan.tracked = incremental_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor);
   scan.was_tracked = true;
+  if (scan.tracked.restarted) fresh_local_map_ = true;
   T_odom_sensor_tracked_ = scan.T_odom_sensor;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
   if (scan.tracked.usable) ++statistics_.scans_matched;
@@ -148,10 +166,9 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
   Node node;
   node.id = map_.graph.nodes.size();
   scan.cloud.id = node.id;
-  const bool begins_segment = next_link_ != NextLink::kChain;
-  bool believed = true;  // the first scan of a segment is where its local frame says
+  ChainStep step = ChainStep::kFresh;
   if (next_link_ == NextLink::kChain) {
-    believed = link_to_chain(scan, node);
+    step = link_to_chain(scan, node);
   } else {
     const FrsmMatcherParameters& p = parameters_.incremental_graph_builder.frsm_matcher;
     const double scale = p.scanmatch_cov_scale;
@@ -171,13 +188,14 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
     }
   }
   map_.graph.nodes.push_back(node);
-  chains_.add(begins_segment, believed, scan.tracked.T_local_sensor);
-  if (believed) {
-    anchor_ = {node.id, scan.T_odom_sensor};
-  } else if (refusals_in_a_row_ >= kMaxRefusals) {  // the local map does not fit what is seen any more: make a new one
-    incremental_.begin(scan.tracked.T_local_sensor);
+  chains_.add(step == ChainStep::kFresh, step != ChainStep::kOdometry, scan.tracked.T_local_sensor);
+  if (step != ChainStep::kOdometry) {
     anchor_ = {node.id, scan.T_odom_sensor};
     refusals_in_a_row_ = 0;
+  } else if (++refusals_in_a_row_ >=
+             kMaxRefusals) {  // the local map does not fit what is seen any more: make a new one
+    incremental_.begin(scan.tracked.T_local_sensor);
+    fresh_local_map_ = true;
   }
   map_.clouds.push_back(scan.cloud);
   ++statistics_.nodes;
@@ -189,16 +207,17 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
   return node.id;
 }
 
-bool Mapper::link_to_chain(LastScan& scan, Node& node) {
+Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   const Node& previous = map_.graph.nodes.back();
   const Pose2 T_previous_node = between(T_odom_sensor_node_, scan.T_odom_sensor);
-  const MatchLink match = incremental_.link(chains_.local_pose(anchor_.node),
-                                            between(anchor_.T_odom_sensor, scan.T_odom_sensor), scan.tracked);
-  const bool believed = match.refusal.empty();
   const auto add_edge = [&](std::uint64_t from, const Pose2& pose, const Eigen::Matrix3d& covariance,
                             ConstraintType type) {
     map_.graph.edges.push_back({next_edge_id_++, from, node.id, {scan.cloud.time, node.id, pose, covariance, type}});
   };
+  MatchLink match = incremental_.link(chains_.local_pose(anchor_.node),
+                                      between(anchor_.T_odom_sensor, scan.T_odom_sensor), scan.tracked);
+  if (fresh_local_map_) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
+  const bool believed = match.refusal.empty();
   // What is matched after a gap says where the node is from before the gap, not from the nodes within.
   if (!believed || anchor_.node != previous.id) {
     add_edge(previous.id, T_previous_node, incremental_.odometry_covariance(T_previous_node),
@@ -211,14 +230,17 @@ bool Mapper::link_to_chain(LastScan& scan, Node& node) {
     ++statistics_.odometry_links;
     ++statistics_.match_refusals[match.refusal];
     node.pose = previous.pose * T_previous_node;
+  }
+  if (!believed && !fresh_local_map_) {
     scan.tracked.T_local_sensor = chains_.local_pose(previous.id) * T_previous_node;
     incremental_.correct(scan.tracked.T_local_sensor);
   }
-  refusals_in_a_row_ = believed ? 0 : refusals_in_a_row_ + 1;
   map_.incremental_results.push_back({node.id, previous.id, scan.tracked.T_local_sensor, scan.tracked.covariance,
                                       between(chains_.local_pose(previous.id), scan.tracked.T_local_sensor),
                                       scan.tracked.hit_fraction});
-  return believed;
+  const ChainStep step = believed ? ChainStep::kMatched : fresh_local_map_ ? ChainStep::kFresh : ChainStep::kOdometry;
+  fresh_local_map_ = false;
+  return step;
 }
 
 void Mapper::link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,
@@ -265,8 +287,9 @@ void Mapper::solve(int max_iterations) {
   OptimizerOptions options;
   options.switchable_constraint_scale = parameters_.switchable_constraint_scale;
   options.max_iterations = max_iterations;
-  optimize(map_.graph, options);
+  const OptimizerSummary summary = optimize(map_.graph, options);
   ++statistics_.solves;
+  if (!summary.converged) ++statistics_.solves_cut_short;
   pending_closures_ = 0;
   nodes_at_last_solve_ = map_.graph.nodes.size();
 }

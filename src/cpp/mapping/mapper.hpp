@@ -56,7 +56,8 @@ class Mapper {
   void finish();
 
   const Map& map() const { return map_; }
-  /// Replaces everything by a map from elsewhere. Mapping goes on after begin_session().
+  /// Replaces everything by a map from elsewhere. Mapping goes on after begin_session(). Throws InputError, with
+  /// nothing changed, if the map contradicts itself.
   void set_map(Map map);
 
   /// Whether the sensor's pose in the map is known.
@@ -90,6 +91,9 @@ class Mapper {
   };
   /// How the next node hangs on what is there.
   enum class NextLink { kNone, kChain, kPaused, kSession };
+  /// How a node came to its place on the scan matcher's local map: by its match, by odometry alone, or as the first of
+  /// a new local map.
+  enum class ChainStep { kMatched, kOdometry, kFresh };
   /// The newest node whose match was believed.
   struct Anchor {
     std::uint64_t node = 0;
@@ -100,7 +104,7 @@ class Mapper {
   void track(LastScan& scan);
   void carry(LastScan& scan) const;
   std::uint64_t make_node(LastScan& scan);
-  bool link_to_chain(LastScan& scan, Node& node);
+  ChainStep link_to_chain(LastScan& scan, Node& node);
   void link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node, double time);
   void close_loops(std::uint64_t node);
   double add_closure(const Closure& closure);
@@ -125,7 +129,8 @@ class Mapper {
   Pose2 T_local_sensor_tracked_;  // and what it said
   Anchor anchor_;
   int refusals_in_a_row_ = 0;
-  Pose2 T_odom_sensor_node_;  // at the newest node
+  bool fresh_local_map_ = false;  // no node yet is on the local map that scans are matched with
+  Pose2 T_odom_sensor_node_;      // at the newest node
   Pose2 T_odom_base_node_;
   std::uint64_t next_edge_id_ = 0;
   std::uint64_t pending_closures_ = 0;  // since the last solve

@@ -25,6 +25,7 @@ struct MapperStatistics {
   ClosureCounts loops;
   ClosureCounts docks;
   std::uint64_t solves = 0;
+  std::uint64_t solves_cut_short = 0;  ///< that ended before they converged
 };
 
 }  // namespace oort

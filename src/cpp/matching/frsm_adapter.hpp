@@ -8,8 +8,12 @@
 
 namespace oort {
 
-inline frsm::Pose to_frsm(const Pose2& pose) { return {pose.x, pose.y, pose.theta}; }
-inline Pose2 from_frsm(const frsm::Pose& pose) { return {pose.x, pose.y, wrap_angle(pose.theta)}; }
+inline frsm::Pose to_frsm(const Pose2& pose) {
+  return {pose.x, pose.y, pose.theta};
+}
+inline Pose2 from_frsm(const frsm::Pose& pose) {
+  return {pose.x, pose.y, wrap_angle(pose.theta)};
+}
 
 /// The returns of a cloud in beam order, in the sensor frame.
 frsm::Points returns_of(const PointCloud& cloud);

@@ -67,9 +67,6 @@ void declare_loop_closure(const Section& v, LoopClosureGraphBuilderParameters& p
   frsm(p.frsm_matcher.search_window_theta, "search_window_theta", {0.35, "rad", {0.01, 3.15}},
        "Half width of the search in heading.")
       .own(0.52, "What a chain drifts between two visits is less.");
-  frsm(p.frsm_matcher.max_ambiguity, "max_ambiguity", {1.0, "fraction", {0.0, 1.0}},
-       "A match is refused if another place in the window has more than this share of its score; 1: never.")
-      .own(1.0);
   declare_match_filter(frsm.section("match_filter"), p.frsm_matcher.match_filter);
   declare_branch_and_bound_matcher(v.section("branch_and_bound_matcher", ParameterStatus::kLater),
                                    p.branch_and_bound_matcher);

@@ -183,7 +183,6 @@ struct FrsmLoopMatcherParameters {
   int query_neighborhood_size;
   double search_window_xy;
   double search_window_theta;
-  double max_ambiguity;
   MatchFilterParameters match_filter;
 };
 

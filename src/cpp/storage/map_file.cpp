@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/storage/check.hpp"
+#include "oort/mapping/map_check.hpp"
 #include "oort/storage/codec.hpp"
 #include "oort/storage/file_set.hpp"
 #include "oort/storage/paths.hpp"

@@ -3,22 +3,24 @@
 """``python -m oort.replay INPUT``: maps one recorded drive and writes all that came of it into a folder."""
 
 import argparse
+import math
 import sys
 import time
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from tqdm import tqdm
 
-from oort._core import Parameters
+from oort._core import Parameters, normalise_map_path
 from oort.errors import InputError, OortError
 from oort.events import Event, read_events
 from oort.parameters import read_parameters
 from oort.recording import Pose, Recording, Scan, open_recording
 from oort.report import Stopwatch, format_table
 from oort.results import Drive, write_results
-from oort.session import Session, State
+from oort.session import Session
 from oort.trajectory import TrajectoryRecorder
 
 
@@ -26,8 +28,6 @@ from oort.trajectory import TrajectoryRecorder
 class ReplayOptions:
     """How to replay, beyond the parameters of mapping."""
 
-    map_path: str
-    """base path of the map that is saved; empty: none"""
     events: Sequence[Event] = ()
     resume: tuple[str, Pose] | None = None
     """a map to go on with, and about where the sensor is in it at the start"""
@@ -38,46 +38,47 @@ class ReplayOptions:
 
 @dataclass
 class _EventQueue:
-    """Hands out the calls that are due, in the order of the file."""
+    """Makes the calls that are due. None of them saves: a live robot's log names the live robot's map."""
 
     session: Session
+    recorder: TrajectoryRecorder
     events: Sequence[Event]
-    done: int = field(default=0, init=False)
+    """in the order of the file"""
+    waiting: deque[tuple[int, Event]] = field(init=False)
+    """with their places in the file"""
+
+    def __post_init__(self) -> None:
+        """Each call has its own time: one that is out of order does not wait for those before it in the file."""
+        self.waiting = deque(sorted(enumerate(self.events), key=lambda entry: entry[1].t))
 
     def run_until(self, t: float) -> None:
-        """Runs all calls up to a scan's stamp."""
-        while self.done < len(self.events) and self.events[self.done].t <= t:
-            self._run_next()
-
-    def run_all(self) -> None:
-        """Runs the calls that are left."""
-        while self.done < len(self.events):
-            self._run_next()
-
-    def _run_next(self) -> None:
-        event = self.events[self.done]
-        self.done += 1
-        try:
-            self.session.call(event.call, event.args)
-        except OortError as error:
-            raise type(error)(f"event {self.done - 1} ({event.call} at {event.t}): {error}") from error
+        """Makes all calls up to a scan's stamp."""
+        while self.waiting and self.waiting[0][1].t <= t:
+            number, event = self.waiting.popleft()
+            try:
+                self.session.call(event.call, event.args)
+            except OortError as error:
+                raise type(error)(f"event {number} ({event.call} at {event.t}): {error}") from error
+            self.session.save_to("")
+            if event.call in ("map/clear", "map/load"):
+                self.recorder.forget_nodes()
 
 
 def replay(recording: Recording, parameters: Parameters, options: ReplayOptions) -> Drive:
     """Runs a whole recording through a session, in the order of the recording, and returns what came of it.
 
-    The map is saved when the drive ends; nothing is written before.
+    Nothing is written: write_results() does that. Raises InputError if no scan could be mapped.
     """
     watch = Stopwatch()
     session = Session(parameters, recording.sensor_on_base)
     recorder = TrajectoryRecorder(recording.sensor_on_base)
-    events = _EventQueue(session, options.events)
+    events = _EventQueue(session, recorder, options.events)
     times: list[float] = []
     if options.resume is not None:
         session.load(options.resume[0])
-        session.resume(options.map_path, options.resume[1])
+        session.resume("", options.resume[1])
     elif not any(event.call == "map/start" for event in options.events):
-        session.start(options.map_path)
+        session.start()
     for scan in _progress(_until(recording.scans(), options.until), recording, options.quiet):
         events.run_until(scan.time)
         started = time.perf_counter()
@@ -87,9 +88,13 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
         times.append(scan.time)
     if not times:
         raise InputError(f"{recording.name}: no scan to map")
-    events.run_all()
-    if session.state is not State.NOT_MAPPING:
-        session.stop()
+    events.run_until(math.inf if options.until is None else times[0] + options.until)
+    session.stop()
+    if session.mapper.num_nodes == 0:
+        raise InputError(
+            f"{recording.name}: no scan made it into a map: each has fewer than "
+            f"{parameters.get('min_pointcloud_size')} returns, or the map was cleared or never started"
+        )
     return Drive(recording, parameters, session, recorder, watch, max(times) - min(times))
 
 
@@ -145,8 +150,10 @@ def _run(args: argparse.Namespace) -> None:
         args.input, scan_topic=args.scan_topic, odom_frame=args.odom_frame, max_range=args.max_range
     )
     out = Path(args.out) if args.out else Path("oort-out") / recording.name
+    map_path = args.map or str(out.absolute() / "map")
+    if args.resume and normalise_map_path(args.resume) == normalise_map_path(map_path):
+        raise InputError(f"{args.resume}: resuming would overwrite this map; choose another place with --map or --out")
     options = ReplayOptions(
-        map_path=args.map or str(out.absolute() / "map"),
         events=events,
         resume=(args.resume, tuple(args.pose)) if args.resume else None,
         until=args.until,
@@ -155,11 +162,10 @@ def _run(args: argparse.Namespace) -> None:
     if not args.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
-    out.mkdir(parents=True, exist_ok=True)
-    report = write_results(replay(recording, parameters, options), out)
+    report = write_results(replay(recording, parameters, options), out, map_path)
     if not args.quiet:
         print(format_table(report))
-        print(f"wrote {out}: trajectory.tum map.pgm map.yaml map.png graph.g2o report.json; map: {options.map_path}")
+        print(f"wrote {out}: trajectory.tum map.pgm map.yaml map.png graph.g2o report.json; map: {map_path}")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

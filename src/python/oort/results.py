@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from oort._core import Map, Parameters, render_map
+from oort._core import Map, Parameters, render_map, save_map
 from oort.export import PoseGraph, write_g2o, write_map_server, write_picture, write_tum
 from oort.export.files import write_atomically
 from oort.recording import Recording
@@ -33,9 +33,14 @@ class Drive:
     recorded_seconds: float
 
 
-def write_results(drive: Drive, out: Path) -> dict[str, Any]:
-    """Writes trajectory.tum, map.pgm and .yaml, map.png, graph.g2o and report.json; returns the report."""
+def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
+    """Writes trajectory.tum, map.pgm and .yaml, map.png, graph.g2o and report.json into a folder, and the map.
+
+    Returns the report. Raises OortError if something cannot be written.
+    """
     map_ = drive.session.map
+    out.mkdir(parents=True, exist_ok=True)
+    save_map(map_path, map_)
     base_poses = drive.recorder.base_poses(map_)
     grid = render_map(map_, drive.parameters)[0]
     write_tum(out / "trajectory.tum", drive.recorder.stamps, base_poses)

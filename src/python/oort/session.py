@@ -9,7 +9,7 @@ import enum
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from oort._core import Map, Mapper, Parameters, ScanResult, load_map, save_map
+from oort._core import Map, Mapper, Parameters, ScanResult, load_map, save_map, save_metadata
 from oort.errors import StateError
 from oort.locations import Locations, Pose
 from oort.recording import Scan
@@ -86,8 +86,10 @@ class Session:
             raise StateError(f"no call {name!r}; the calls are: {', '.join(sorted(self._calls))}")
         try:
             return self._calls[name](*args)
-        except TypeError as error:
-            raise StateError(f"{name}: the arguments {list(args)!r} do not fit: {error}") from error
+        except (TypeError, ValueError, IndexError) as error:
+            raise StateError(
+                f"{name}: the arguments {list(args)!r} do not fit: {str(error).splitlines()[0]}"
+            ) from error
 
     def add_scan(self, scan: Scan) -> ScanResult | None:
         """Takes one scan with its odometry; None if the state is not mapping."""
@@ -103,6 +105,7 @@ class Session:
 
     def start(self, path: str = "") -> None:
         """Begins a map, or goes on after a pause; ``path`` is where it is saved, empty for nowhere."""
+        _check_text(path=path)
         if self._state is State.PAUSED:
             self.resume_from_paused()
         elif self._state is State.NOT_MAPPING:
@@ -113,8 +116,13 @@ class Session:
             self._state = State.MAPPING
         self._path = path
 
+    def save_to(self, path: str) -> None:
+        """Sets where the map is saved from now on; empty for nowhere."""
+        self._path = path
+
     def load(self, path: str) -> None:
         """Replaces the map by one from disk; what is in memory stays if that fails."""
+        _check_text(path=path)
         loaded = load_map(path)
         self._new_mapper()
         self._mapper.set_map(loaded)
@@ -127,6 +135,7 @@ class Session:
             raise StateError(f"map/resume: the state is {self._state.value}; call map/stop first")
         if self._mapper.num_nodes == 0:
             raise StateError("map/resume: no map is loaded; call map/load first")
+        _check_text(path=path)
         x, y, theta = (float(value) for value in pose)
         self._mapper.begin_session((x, y, theta))
         self._path = path
@@ -174,17 +183,36 @@ class Session:
             raise StateError(
                 f"graph_loc/create: the state is {self._state.value} and no localiser tells where the robot is"
             )
-        return self._locations.create_here(name_space, id)
+        _check_text(namespace=name_space, id=id)
+        created = self._locations.create_here(name_space, id)
+        self._save_locations()
+        return created
 
     def _create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
         self._locations.create_points(name_spaces, points, ids)
+        self._save_locations()
 
     def _delete_location(self, name_space: str, id: str) -> bool:
-        return self._locations.delete(name_space, id)
+        deleted = self._locations.delete(name_space, id)
+        self._save_locations()
+        return deleted
 
     def _clear_locations(self, name_space: str, use_as_prefix: bool) -> list[tuple[str, str]]:
-        return self._locations.clear(name_space, use_as_prefix)
+        cleared = self._locations.clear(name_space, use_as_prefix)
+        self._save_locations()
+        return cleared
+
+    def _save_locations(self) -> None:
+        """Changes of places reach the disk at once; the rest of the map when mapping stops."""
+        if self._path and self._mapper.num_nodes > 0:
+            save_metadata(self._path, self._mapper.map())
 
     def _new_mapper(self) -> None:
         self._mapper = Mapper(self._parameters, self._sensor_on_base)
         self._locations = Locations(self._mapper)
+
+
+def _check_text(**values: object) -> None:
+    for name, value in values.items():
+        if not isinstance(value, str):
+            raise TypeError(f"{name} must be a string, got {value!r}")

@@ -41,6 +41,11 @@ class TrajectoryRecorder:
         self._relative.append(result.T_node_sensor if result is not None and known else (0.0, 0.0, 0.0))
         self._made_node.append(result is not None and result.outcome == "node")
 
+    def forget_nodes(self) -> None:
+        """The map was dropped or replaced: scans so far are carried by odometry from what comes."""
+        self._nodes = [_NO_NODE] * len(self._nodes)
+        self._made_node = [False] * len(self._made_node)
+
     def base_poses(self, map_: Map) -> NDArray[np.float64]:
         """T_map_base of every scan, (n, 3), in their order, at the map's solution.
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/storage/check.hpp"
+#include "oort/mapping/map_check.hpp"
 
 #include <cmath>
 
