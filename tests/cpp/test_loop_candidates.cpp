@@ -20,6 +20,7 @@ Parameters documented_search() {
   EXPECT_EQ(search.closest_allowed_id_threshold_large, 30);
   EXPECT_EQ(search.closest_allowed_id_threshold_small, 5);
   EXPECT_EQ(search.candidate_stride, 1);
+  EXPECT_EQ(search.max_candidate_distance, 0.0);
   return parameters;
 }
 
@@ -51,13 +52,18 @@ TEST_F(CandidatesTest, AreTheNearestOutsideEachOthersNeighborhoods) {
   EXPECT_EQ(candidates(99), (Ids{0, 9, 18, 27, 69}));
 }
 
-TEST_F(CandidatesTest, NumberIsLimited) {
+TEST_F(CandidatesTest, NumberAndDistanceAreLimited) {
   go_out_and_back(50);
   CandidateSearchParameters& search = parameters.loop_closure_graph_builder.candidate_search;
   search.knearest_neighbors = 2;
   EXPECT_EQ(candidates(99), (Ids{0, 9}));
   search.knearest_neighbors = 0;
   EXPECT_EQ(candidates(99), Ids{});
+  search.knearest_neighbors = 5;
+  search.max_candidate_distance = 3.61;
+  EXPECT_EQ(candidates(99), (Ids{0, 9, 18}));
+  search.max_candidate_distance = 3.59;
+  EXPECT_EQ(candidates(99), (Ids{0, 9}));
 }
 
 TEST_F(CandidatesTest, NeighborhoodSizeSetsTheHops) {

@@ -99,9 +99,11 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
   for (const Node& node : map.graph.nodes) {
     const bool has_submap =
         (node.id - chains.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
-    if (has_submap && node.id != query &&
+    const double distance = (node.pose.translation() - center).norm();
+    const bool in_reach = search.max_candidate_distance == 0.0 || distance <= search.max_candidate_distance;
+    if (in_reach && has_submap && node.id != query &&
         !is_recent(chains, node.id, query, search.closest_allowed_id_threshold_small)) {
-      by_distance.emplace_back((node.pose.translation() - center).norm(), node.id);
+      by_distance.emplace_back(distance, node.id);
     }
   }
   std::sort(by_distance.begin(), by_distance.end());

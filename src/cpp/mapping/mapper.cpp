@@ -100,7 +100,7 @@ bool Mapper::notify_docked() {
   const std::optional<Closure> closure = docks_.find(map_, chains_, query, statistics_.docks);
   if (!closure) return false;
   add_closure(*closure);
-  solve(kIterationsWhileMapping);
+  solve_anew(kIterationsWhileMapping);
   return true;
 }
 
@@ -116,7 +116,7 @@ void Mapper::resume_from_paused() {
 }
 
 void Mapper::finish() {
-  if (pending_closures_ > 0 || !map_.graph.switchable_edges.empty()) solve(kFinalIterations);
+  if (pending_closures_ > 0 || !map_.graph.switchable_edges.empty()) solve_anew(kFinalIterations);
 }
 
 void Mapper::set_map(Map map) {
@@ -283,7 +283,16 @@ void Mapper::solve_if_worthwhile(double surprise) {
   if (surprise > kSurprise || nodes >= nodes_at_last_solve_ + interval) solve(kIterationsWhileMapping);
 }
 
-void Mapper::solve(int max_iterations) {
+// Links that an earlier false closure had switched off stay off, as nothing pulls at a switch that is 0. So the whole
+// graph is solved once more with all of them on, and the better of the two solutions counts.
+void Mapper::solve_anew(int max_iterations) {
+  const double cost = solve(max_iterations);
+  Graph kept = map_.graph;
+  for (SwitchableEdge& edge : map_.graph.switchable_edges) edge.switch_value = 1.0;
+  if (solve(max_iterations) >= cost) map_.graph = std::move(kept);
+}
+
+double Mapper::solve(int max_iterations) {
   OptimizerOptions options;
   options.switchable_constraint_scale = parameters_.switchable_constraint_scale;
   options.max_iterations = max_iterations;
@@ -292,6 +301,7 @@ void Mapper::solve(int max_iterations) {
   if (!summary.converged) ++statistics_.solves_cut_short;
   pending_closures_ = 0;
   nodes_at_last_solve_ = map_.graph.nodes.size();
+  return summary.final_cost;
 }
 
 ScanResult Mapper::result(const LastScan& scan, ScanOutcome outcome) const {

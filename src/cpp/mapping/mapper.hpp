@@ -109,7 +109,8 @@ class Mapper {
   void close_loops(std::uint64_t node);
   double add_closure(const Closure& closure);
   void solve_if_worthwhile(double surprise);
-  void solve(int max_iterations);
+  void solve_anew(int max_iterations);
+  double solve(int max_iterations);
   std::uint64_t nearest_node(const Eigen::Vector2d& p_map) const;
   ScanResult result(const LastScan& scan, ScanOutcome outcome) const;
 

@@ -159,6 +159,7 @@ struct CandidateSearchParameters {
   int closest_allowed_id_threshold_large;
   int closest_allowed_id_threshold_small;
   double max_dist_allowed_threshold;
+  double max_candidate_distance;
   int candidate_stride;
 };
 
