@@ -148,6 +148,18 @@ TEST_F(DockTest, SomewhereElseIsNotTheDock) {
   EXPECT_FALSE(find());
 }
 
+TEST_F(DockTest, WhereNothingIsSeenTheContactsCount) {
+  map.clouds[query].points.resize(3);
+  p.dock_match_submap_size = 1;
+  const std::optional<Closure> closure = find();
+  ASSERT_TRUE(closure);
+  EXPECT_EQ(closure->T_from_to.x, 0.0);
+  EXPECT_EQ(closure->hit_fraction, 0.0);
+  const double reach = p.dock_contacts_size + p.dock_max_translation;
+  EXPECT_NEAR(closure->covariance(0, 0), reach * reach, 1e-12);
+  EXPECT_EQ(counts.accepted, 1u);
+}
+
 TEST_F(DockTest, TheDocksOwnNodeIsNoClosure) {
   query = 0;
   EXPECT_EQ(verdict(), "same_node");

@@ -94,6 +94,10 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   const frsm::Match match = matcher_.match(*submap, gather_points(map, chains, query, query_nodes), prior.mean,
                                            {reach, reach, parameters_.search_window_theta}, &prior);
   const Pose2 T_dock_query = from_frsm(match.pose);
+  if (match.status == frsm::Status::kTooFewPoints || match.status == frsm::Status::kEmptyScan) {
+    // Nothing was seen that could speak against the contacts: the robot is at the dock, give or take their reach.
+    return Closure{dock.node, query, dock.T_node_dock, prior.covariance, 0.0};
+  }
   if (match.hits == 0) {
     reason = "no_overlap";
   } else if (match.hit_fraction < parameters_.dock_match_min_hit_pct) {

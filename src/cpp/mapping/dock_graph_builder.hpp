@@ -28,7 +28,8 @@ class DockGraphBuilder {
  public:
   explicit DockGraphBuilder(const Parameters& parameters);
 
-  /// The closure from the dock's node to `query`, a node recorded on the dock. Counts the attempt.
+  /// The closure from the dock's node to `query`, a node recorded on the dock. Where too little is seen to match, it is
+  /// the dock's own place with the reach of its contacts as deviation. Counts the attempt.
   std::optional<Closure> find(const Map& map, const Chains& chains, std::uint64_t query, ClosureCounts& counts) const;
 
  private:
