@@ -3,19 +3,30 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sets Oort up on Debian 12: system packages, a virtual environment in .venv, and the package built into it.
 #   scripts/setup.sh           what mapping needs
-#   scripts/setup.sh --test    and what the tests need
+#   scripts/setup.sh --ros     and what the ROS node and the ROS command line tools need
+#   scripts/setup.sh --test    and what the tests need, with ROS
 # Without root and without sudo the system packages must be there already.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-test=OFF extra=""
+ros=OFF test=OFF extra=""
 case "${1:-}" in
   "") ;;
-  --test) test=ON extra="[test]" ;;
-  *) echo "usage: scripts/setup.sh [--test]" >&2; exit 2 ;;
+  --ros) ros=ON ;;
+  --test) ros=ON test=ON extra="[test]" ;;
+  *) echo "usage: scripts/setup.sh [--ros | --test]" >&2; exit 2 ;;
 esac
 
 packages=(g++ cmake ninja-build python3 python3-venv python3-dev
   libceres-dev libeigen3-dev libopencv-core-dev libopencv-imgproc-dev capnproto libcapnp-dev)
+if [ $ros = ON ]; then
+  packages+=(python3-roslaunch python3-rospy python3-tf2-ros rosout
+    rosbash rospack-tools python3-rosbag python3-rosmsg python3-rosnode python3-rosparam python3-rosservice python3-rostopic)
+  # Of each message package, Debian splits off the Python classes, the definitions and (for rospack) the package.xml.
+  for messages in diagnostic-msgs geometry-msgs nav-msgs sensor-msgs std-msgs std-srvs tf2-msgs visualization-msgs; do
+    packages+=("python3-$messages" "ros-$messages" "lib$messages-dev")
+  done
+  packages+=(python3-genpy)
+fi
 [ $test = ON ] && packages+=(libgtest-dev)
 missing=()
 for package in "${packages[@]}"; do
@@ -37,3 +48,8 @@ fi
 .venv/bin/pip install --quiet "scikit-build-core>=0.10" "pybind11>=2.12"
 echo "Building Oort; the first time that takes some minutes."
 .venv/bin/pip install --quiet --no-build-isolation -C build-dir=build/dev -C cmake.define.OORT_TESTS=$test -e ".$extra"
+if [ -d .venv/share/oort ]; then
+  echo "The ROS node is there: source .venv/share/oort/setup.bash && rosrun oort oort_ros"
+else
+  echo "The ROS node is not there; scripts/setup.sh --ros adds it."
+fi

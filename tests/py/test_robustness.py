@@ -13,7 +13,8 @@ from oort import InputError, Parameters, Session, StateError, load_map
 from oort.export.tum import read_tum
 from oort.replay import main
 from recording_files import flaser
-from test_session import drive_around, room_scan
+from scenes import room_scan
+from test_session import drive_around
 
 
 @pytest.fixture

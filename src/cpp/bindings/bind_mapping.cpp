@@ -119,6 +119,9 @@ void bind_mapping(py::module_& m) {
                [](const Parameters& p, const PoseTuple& pose) { return std::make_unique<Mapper>(p, pose_of(pose)); }),
            py::arg("parameters"), py::arg("sensor_on_base") = PoseTuple{0.0, 0.0, 0.0})
       .def(
+          "mount_sensor", [](Mapper& mapper, const PoseTuple& pose) { mapper.mount_sensor(pose_of(pose)); },
+          py::arg("sensor_on_base"), "Says where the sensor sits on the base, before the first scan.")
+      .def(
           "add_scan",
           [](Mapper& mapper, double time, double angle_min, double angle_increment, double range_min, double range_max,
              const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry) {
@@ -138,10 +141,15 @@ void bind_mapping(py::module_& m) {
            "The next scan makes a node whose link to the last one is very uncertain.")
       .def("finish", &Mapper::finish, py::call_guard<py::gil_scoped_release>(), "Brings the map to its final solution.")
       .def(
-          "map", [](const Mapper& mapper) { return Map(mapper.map()); }, "A snapshot of the map.")
+          "map",
+          [](const Mapper& mapper) {
+            const py::gil_scoped_release release;
+            return Map(mapper.map());
+          },
+          "A snapshot of the map.")
       .def(
           "set_map", [](Mapper& mapper, const Map& map) { mapper.set_map(map); }, py::arg("map"),
-          "Replaces everything by a map from elsewhere.")
+          py::call_guard<py::gil_scoped_release>(), "Replaces everything by a map from elsewhere.")
       .def_property_readonly("num_nodes", [](const Mapper& mapper) { return mapper.map().graph.nodes.size(); })
       .def_property_readonly("has_pose", &Mapper::has_pose, "Whether the sensor's pose in the map is known.")
       .def_property_readonly(

@@ -49,12 +49,14 @@ Parameters checked(const Parameters& parameters) {
 }  // namespace
 
 Mapper::Mapper(const Parameters& parameters, const Pose2& T_base_sensor)
-    : parameters_(checked(parameters)),
-      T_base_sensor_(T_base_sensor),
-      incremental_(parameters_),
-      loops_(parameters_),
-      docks_(parameters_) {
+    : parameters_(checked(parameters)), incremental_(parameters_), loops_(parameters_), docks_(parameters_) {
+  mount_sensor(T_base_sensor);
+}
+
+void Mapper::mount_sensor(const Pose2& T_base_sensor) {
   if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
+  if (last_scan_) throw StateError("the sensor's place on the base cannot change while scans are being mapped");
+  T_base_sensor_ = T_base_sensor;
 }
 
 ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {

@@ -39,6 +39,10 @@ class Mapper {
   /// Throws ParameterError if the parameters contradict each other, InputError if the pose is not finite.
   explicit Mapper(const Parameters& parameters, const Pose2& T_base_sensor = {});
 
+  /// Says where the sensor sits on the base, if that was not known before. Throws StateError once scans are being
+  /// mapped, InputError if the pose is not finite.
+  void mount_sensor(const Pose2& T_base_sensor);
+
   /// Takes the next scan. Throws InputError if the scan's limits or the pose are not finite; nothing changes then.
   ScanResult add_scan(const LaserScan& scan, const Pose2& T_odom_base);
 

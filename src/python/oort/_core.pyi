@@ -225,6 +225,8 @@ class Mapper:
     """Turns scans with odometry into a map. Not thread-safe."""
 
     def __init__(self, parameters: Parameters, sensor_on_base: _Pose = (0.0, 0.0, 0.0)) -> None: ...
+    def mount_sensor(self, sensor_on_base: _Pose) -> None:
+        """Says where the sensor sits on the base, before the first scan."""
     def add_scan(
         self,
         time: float,

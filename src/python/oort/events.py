@@ -2,13 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The events file: the service calls of a drive, so that it can be replayed."""
 
+import errno
 import json
+import os
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from oort.errors import InputError
+
+SCAN = "scan"
+"""The call's name in an entry that stands for a scan."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +24,7 @@ class Event:
     t: float
     """[s]"""
     call: str
-    """Name under the node, such as map/notify_docked."""
+    """Name under the node, such as map/notify_docked; or SCAN: here the scan was mapped whose stamp is the argument."""
     args: list[Any] = field(default_factory=list)
 
 
@@ -48,3 +54,36 @@ def _event(path: str | Path, number: int, entry: Any) -> Event:
     if not isinstance(call, str) or not isinstance(args, list):
         raise InputError(f'{where}: "call" must be a string and "args" a list')
     return Event(float(t), call, args)
+
+
+class EventLog:
+    """Writes an events file as things happen; after each entry the file is whole."""
+
+    _END = b"\n]\n"
+
+    def __init__(self, path: str | Path) -> None:
+        """Begins the file anew. Raises InputError if it cannot be written."""
+        self._path = path
+        self._size = 1  # without the end
+        try:
+            self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o644)
+            os.write(self._file, b"[" + self._END)
+        except OSError as error:
+            raise InputError(f"{path}: the events log cannot be written: {error.strerror}") from error
+
+    def add(self, t: float, call: str, args: Sequence[Any]) -> None:
+        """Adds an entry. Raises InputError if that fails; the file then ends with the entry before."""
+        entry = json.dumps({"t": t, "call": call, "args": list(args)}).encode()
+        text = (b"\n" if self._size == 1 else b",\n") + entry
+        try:
+            if os.pwrite(self._file, text + self._END, self._size) < len(text + self._END):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        except OSError as error:
+            os.pwrite(self._file, self._END, self._size)  # where something has been, there is room
+            os.ftruncate(self._file, self._size + len(self._END))
+            raise InputError(f"{self._path}: an entry of the events log is lost: {error.strerror}") from error
+        self._size += len(text)
+
+    def close(self) -> None:
+        """Closes the file."""
+        os.close(self._file)

@@ -45,9 +45,11 @@ class Locations:
             self._waiting.append(request)
         return request.id
 
-    def create_at(self, name_space: str, id: str, pose: Pose) -> None:
-        """Records a given pose of the sensor in the map frame."""
+    def create_at(self, name_space: str, id: str, pose: Pose) -> str:
+        """Records a given pose of the sensor in the map frame; returns the id, made up when it was empty."""
+        id = id or self._new_id(name_space)
         self._mapper.create_location(name_space, id, pose)
+        return id
 
     def create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
         """Records points (x, y) of the map frame, all relative to the node that is nearest to their centroid."""

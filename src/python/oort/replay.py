@@ -6,9 +6,8 @@ import argparse
 import math
 import sys
 import time
-from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from tqdm import tqdm
@@ -20,6 +19,7 @@ from oort.parameters import read_parameters
 from oort.recording import Pose, Recording, Scan, open_recording
 from oort.report import Stopwatch, format_table
 from oort.results import Drive, write_results
+from oort.schedule import make_schedule
 from oort.session import Session
 from oort.trajectory import TrajectoryRecorder
 
@@ -36,32 +36,21 @@ class ReplayOptions:
     quiet: bool = False
 
 
-@dataclass
-class _EventQueue:
-    """Makes the calls that are due. None of them saves: a live robot's log names the live robot's map."""
+@dataclass(frozen=True)
+class _Caller:
+    """Makes the calls of a drive. None of them saves: a live robot's log names the live robot's map."""
 
     session: Session
     recorder: TrajectoryRecorder
-    events: Sequence[Event]
-    """in the order of the file"""
-    waiting: deque[tuple[int, Event]] = field(init=False)
-    """with their places in the file"""
 
-    def __post_init__(self) -> None:
-        """Each call has its own time: one that is out of order does not wait for those before it in the file."""
-        self.waiting = deque(sorted(enumerate(self.events), key=lambda entry: entry[1].t))
-
-    def run_until(self, t: float) -> None:
-        """Makes all calls up to a scan's stamp."""
-        while self.waiting and self.waiting[0][1].t <= t:
-            number, event = self.waiting.popleft()
-            try:
-                self.session.call(event.call, event.args)
-            except OortError as error:
-                raise type(error)(f"event {number} ({event.call} at {event.t}): {error}") from error
-            self.session.save_to("")
-            if event.call in ("map/clear", "map/load"):
-                self.recorder.forget_nodes()
+    def __call__(self, number: int, event: Event) -> None:
+        try:
+            self.session.call(event.call, event.args)
+        except OortError as error:
+            raise type(error)(f"event {number} ({event.call} at {event.t}): {error}") from error
+        self.session.save_to("")
+        if event.call in ("map/clear", "map/load"):
+            self.recorder.forget_nodes()
 
 
 def replay(recording: Recording, parameters: Parameters, options: ReplayOptions) -> Drive:
@@ -72,7 +61,7 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
     watch = Stopwatch()
     session = Session(parameters, recording.sensor_on_base)
     recorder = TrajectoryRecorder(recording.sensor_on_base)
-    events = _EventQueue(session, recorder, options.events)
+    schedule = make_schedule(options.events, _Caller(session, recorder))
     times: list[float] = []
     if options.resume is not None:
         session.load(options.resume[0])
@@ -80,15 +69,16 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
     elif not any(event.call == "map/start" for event in options.events):
         session.start()
     for scan in _progress(_until(recording.scans(), options.until), recording, options.quiet):
-        events.run_until(scan.time)
-        started = time.perf_counter()
-        result = session.add_scan(scan)
-        watch.scan_seconds.append(time.perf_counter() - started)
+        result = None
+        if schedule.maps(scan):
+            started = time.perf_counter()
+            result = session.add_scan(scan)
+            watch.scan_seconds.append(time.perf_counter() - started)
         recorder.add(scan.stamp, scan.odometry, result)
         times.append(scan.time)
     if not times:
         raise InputError(f"{recording.name}: no scan to map")
-    events.run_until(math.inf if options.until is None else times[0] + options.until)
+    schedule.finish(math.inf if options.until is None else times[0] + options.until)
     session.stop()
     if session.mapper.num_nodes == 0:
         raise InputError(
@@ -121,6 +111,34 @@ def _progress(scans: Iterator[Scan], recording: Recording, quiet: bool) -> Itera
                 print(f"{recording.name}: {number} of {recording.num_scans} scans", file=sys.stderr)
 
 
+def replay_to_folder(
+    recording: Recording,
+    parameters: Parameters,
+    options: ReplayOptions,
+    out: str | None = None,
+    base: str | None = None,
+) -> None:
+    """Replays a recording, writes what came of it into the folder ``out`` and the map to the path ``base``.
+
+    They default to oort-out/<name of the recording> and ``out``/map. Unless quiet, the report is printed. Raises
+    OortError, also where the map to go on with would be overwritten.
+    """
+    folder = Path(out) if out else Path("oort-out") / recording.name
+    map_path = base or str(folder.absolute() / "map")
+    if options.resume and normalise_map_path(options.resume[0]) == normalise_map_path(map_path):
+        raise InputError(
+            f"{options.resume[0]}: resuming would overwrite this map; choose another place with --map or --out, or "
+            "work in another folder"
+        )
+    if not options.quiet:
+        for note in recording.notes:
+            print(f"note: {note}", file=sys.stderr)
+    report = write_results(replay(recording, parameters, options), folder, map_path)
+    if not options.quiet:
+        print(format_table(report))
+        print(f"wrote {folder}: trajectory.tum map.pgm map.yaml map.png graph.g2o report.json; map: {map_path}")
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort replay",
@@ -149,23 +167,13 @@ def _run(args: argparse.Namespace) -> None:
     recording = open_recording(
         args.input, scan_topic=args.scan_topic, odom_frame=args.odom_frame, max_range=args.max_range
     )
-    out = Path(args.out) if args.out else Path("oort-out") / recording.name
-    map_path = args.map or str(out.absolute() / "map")
-    if args.resume and normalise_map_path(args.resume) == normalise_map_path(map_path):
-        raise InputError(f"{args.resume}: resuming would overwrite this map; choose another place with --map or --out")
     options = ReplayOptions(
         events=events,
         resume=(args.resume, tuple(args.pose)) if args.resume else None,
         until=args.until,
         quiet=args.quiet,
     )
-    if not args.quiet:
-        for note in recording.notes:
-            print(f"note: {note}", file=sys.stderr)
-    report = write_results(replay(recording, parameters, options), out, map_path)
-    if not args.quiet:
-        print(format_table(report))
-        print(f"wrote {out}: trajectory.tum map.pgm map.yaml map.png graph.g2o report.json; map: {map_path}")
+    replay_to_folder(recording, parameters, options, args.out, args.map)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

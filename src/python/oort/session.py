@@ -9,7 +9,7 @@ import enum
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from oort._core import Map, Mapper, Parameters, ScanResult, load_map, save_map, save_metadata
+from oort._core import Map, Mapper, Parameters, Saved, ScanResult, load_map, normalise_map_path, save_map, save_metadata
 from oort.errors import StateError
 from oort.locations import Locations, Pose
 from oort.recording import Scan
@@ -23,16 +23,29 @@ class State(enum.Enum):
     PAUSED = "paused"
 
 
+Save = Callable[[str, Map, Saved], object]
+"""Writes a map, or only its places, to a path."""
+
+
+def save(path: str, map_: Map, what: Saved) -> Saved:
+    """Writes a map, or only its places where the rest on disk fits them; what was written. Raises MapFileError."""
+    if what is Saved.METADATA:
+        return save_metadata(path, map_)
+    save_map(path, map_)
+    return Saved.MAP
+
+
 class Session:
     """Takes scans and calls one at a time, in order."""
 
-    def __init__(self, parameters: Parameters, sensor_on_base: Pose = (0.0, 0.0, 0.0)) -> None:
-        """Starts empty and not mapping; ``sensor_on_base`` is T_base_sensor."""
+    def __init__(self, parameters: Parameters, sensor_on_base: Pose = (0.0, 0.0, 0.0), save: Save = save) -> None:
+        """Starts empty and not mapping; ``sensor_on_base`` is T_base_sensor, ``save`` is how maps reach the disk."""
         self._parameters = parameters
         self._sensor_on_base = sensor_on_base
+        self._save = save
         self._state = State.NOT_MAPPING
         self._path = ""
-        self._new_mapper()
+        self._use(self._new_mapper())
         self._calls: dict[str, Callable[..., Any]] = {
             "map/start": self.start,
             "map/load": self.load,
@@ -116,16 +129,25 @@ class Session:
             self._state = State.MAPPING
         self._path = path
 
+    def mount_sensor(self, sensor_on_base: Pose) -> None:
+        """Says where the sensor sits on the base (T_base_sensor). Raises StateError once scans are being mapped."""
+        self._mapper.mount_sensor(sensor_on_base)
+        self._sensor_on_base = sensor_on_base
+
     def save_to(self, path: str) -> None:
         """Sets where the map is saved from now on; empty for nowhere."""
         self._path = path
 
+    def save(self) -> None:
+        """Saves the map as it is, if there is a map and a path."""
+        self._write(Saved.MAP)
+
     def load(self, path: str) -> None:
         """Replaces the map by one from disk; what is in memory stays if that fails."""
         _check_text(path=path)
-        loaded = load_map(path)
-        self._new_mapper()
-        self._mapper.set_map(loaded)
+        mapper = self._new_mapper()
+        mapper.set_map(load_map(path))
+        self._use(mapper)
         self._state = State.NOT_MAPPING
         self._path = path
 
@@ -136,6 +158,8 @@ class Session:
         if self._mapper.num_nodes == 0:
             raise StateError("map/resume: no map is loaded; call map/load first")
         _check_text(path=path)
+        if path and self._path and normalise_map_path(path) == normalise_map_path(self._path):
+            raise StateError(f"map/resume: {path} is the map to go on with, which stays as it is; give another path")
         x, y, theta = (float(value) for value in pose)
         self._mapper.begin_session((x, y, theta))
         self._path = path
@@ -166,50 +190,59 @@ class Session:
         if self._state is not State.NOT_MAPPING:
             self._mapper.finish()
             self._state = State.NOT_MAPPING
-        if self._path and self._mapper.num_nodes > 0:
-            save_map(self._path, self._mapper.map())
+        self._write(Saved.MAP)
 
     def clear(self) -> None:
         """Drops the map and all places."""
-        self._new_mapper()
+        self._use(self._new_mapper())
         self._state = State.NOT_MAPPING
         self._path = ""
 
     # ---- location calls ----
 
-    def create_location(self, name_space: str, id: str) -> str:
-        """Records where the sensor is now under a name; returns the id."""
-        if self._state is not State.MAPPING:
-            raise StateError(
-                f"graph_loc/create: the state is {self._state.value} and no localiser tells where the robot is"
-            )
+    def create_location(self, name_space: str, id: str, pose: Pose | None = None) -> str:
+        """Records where the sensor is now under a name; returns the id.
+
+        While mapping the map knows where that is; otherwise ``pose`` is T_map_sensor of a localiser.
+        """
         _check_text(namespace=name_space, id=id)
-        created = self._locations.create_here(name_space, id)
-        self._save_locations()
+        if self._state is State.MAPPING:
+            created = self._locations.create_here(name_space, id)
+        elif self._state is State.PAUSED:
+            raise StateError("graph_loc/create: mapping is paused; call map/resume_from_paused first")
+        elif pose is None:
+            raise StateError("graph_loc/create: nothing is being mapped and no localiser tells where the robot is")
+        else:
+            x, y, theta = (float(value) for value in pose)
+            created = self._locations.create_at(name_space, id, (x, y, theta))
+        self._write(Saved.METADATA)
         return created
 
     def _create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
         self._locations.create_points(name_spaces, points, ids)
-        self._save_locations()
+        self._write(Saved.METADATA)
 
     def _delete_location(self, name_space: str, id: str) -> bool:
         deleted = self._locations.delete(name_space, id)
-        self._save_locations()
+        self._write(Saved.METADATA)
         return deleted
 
     def _clear_locations(self, name_space: str, use_as_prefix: bool) -> list[tuple[str, str]]:
         cleared = self._locations.clear(name_space, use_as_prefix)
-        self._save_locations()
+        self._write(Saved.METADATA)
         return cleared
 
-    def _save_locations(self) -> None:
-        """Changes of places reach the disk at once; the rest of the map when mapping stops."""
+    def _write(self, what: Saved) -> None:
+        """Changes of places reach the disk at once; the rest of the map when mapping stops or save() is called."""
         if self._path and self._mapper.num_nodes > 0:
-            save_metadata(self._path, self._mapper.map())
+            self._save(self._path, self._mapper.map(), what)
 
-    def _new_mapper(self) -> None:
-        self._mapper = Mapper(self._parameters, self._sensor_on_base)
-        self._locations = Locations(self._mapper)
+    def _new_mapper(self) -> Mapper:
+        return Mapper(self._parameters, self._sensor_on_base)
+
+    def _use(self, mapper: Mapper) -> None:
+        self._mapper = mapper
+        self._locations = Locations(mapper)
 
 
 def _check_text(**values: object) -> None:

@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""Grid maps as ROS's map_server writes and reads them: a grey picture (.pgm) and its description (.yaml)."""
+"""Grid maps as ROS's map_server writes and reads them: a grey picture (.pgm, .png) and its description (.yaml)."""
 
+import io
 import json
 import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,14 +38,21 @@ class GridMap:
     """the pose of the lower left corner of cell (0, 0)"""
 
 
-def write_map_server(path_base: str | os.PathLike[str], cells: ArrayLike, resolution: float, origin: Pose) -> None:
-    """Writes `path_base`.pgm and then `path_base`.yaml. Arguments as in GridMap.
+def write_map_server(
+    path_base: str | os.PathLike[str],
+    cells: ArrayLike,
+    resolution: float,
+    origin: Pose,
+    *,
+    image_format: Literal["pgm", "png"] = "pgm",
+) -> None:
+    """Writes `path_base`.pgm (or .png) and then `path_base`.yaml. Arguments as in GridMap.
 
     Raises InputError for cells of another shape or value, OortError if a file cannot be written.
     """
     base = Path(path_base)
     grey = grey_picture(cells)
-    image = f"{base.name}.pgm"
+    image = f"{base.name}.{image_format}"
     plain = re.fullmatch(r"[A-Za-z_][\w.-]*", image, re.ASCII)  # needs no quotes in YAML
     description = (
         f"image: {image if plain else json.dumps(image)}\n"
@@ -55,8 +63,9 @@ def write_map_server(path_base: str | os.PathLike[str], cells: ArrayLike, resolu
         f"occupied_thresh: {decimal(_OCCUPIED_THRESH)}\n"
         f"free_thresh: {decimal(_FREE_THRESH)}\n"
     )
-    height, width = grey.shape
-    write_atomically(base.with_name(image), f"P5\n{width} {height}\n255\n".encode() + grey.tobytes())
+    picture = io.BytesIO()
+    Image.fromarray(grey).save(picture, format={"pgm": "PPM", "png": "PNG"}[image_format])
+    write_atomically(base.with_name(image), picture.getvalue())
     write_atomically(base.with_name(f"{base.name}.yaml"), description.encode())
 
 

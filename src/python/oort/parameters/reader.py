@@ -73,7 +73,7 @@ class _Reader:
             path = prefix + key
             try:
                 if "." in key or (path not in self._types and path not in self._sections):
-                    raise ParameterError(self._unknown(path))
+                    raise ParameterError(unknown_parameter(path))
                 if isinstance(member.value, dict) and path in self._types:
                     raise ParameterError(f"{path}: takes one value ({self._types[path]}), not a section {{ }}")
                 if not isinstance(member.value, dict):
@@ -85,7 +85,10 @@ class _Reader:
             if isinstance(member.value, dict):
                 self._apply(member.value, path + ".")
 
-    def _unknown(self, path: str) -> str:
-        known = [*self._types, *sorted(self._sections)]
-        nearest = difflib.get_close_matches(path, known, n=1, cutoff=0.0)[0]
-        return f'unknown parameter "{path}"; the nearest known is "{nearest}"'
+
+def unknown_parameter(path: str) -> str:
+    """The message for a path that is in no table, with the nearest one that is."""
+    known = {entry.path: None for entry in parameter_table()}
+    known.update((path[:i], None) for path in list(known) for i, letter in enumerate(path) if letter == ".")
+    nearest = difflib.get_close_matches(path, known, n=1, cutoff=0.0)[0]
+    return f'unknown parameter "{path}"; the nearest known is "{nearest}"'

@@ -8,12 +8,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
 from oort.errors import InputError, OortError
 from oort.recording.frames import FrameTree
+from oort.recording.laser_scan import scan_from_message, seconds
 from oort.recording.rig import Rig, Survey, assemble
 from oort.recording.types import Pose, Recording, Scan
 
@@ -146,7 +146,7 @@ def _frame(name: str) -> str:
 
 
 def _seconds(stamp: Any) -> float:
-    return float(stamp.sec) + float(stamp.nanosec) / 1e9
+    return seconds(stamp.sec, stamp.nanosec)
 
 
 def _why_unusable(survey: Survey) -> str:
@@ -180,19 +180,14 @@ def _scans(path: Path, topic: str, rig: Rig, max_range: float) -> Iterator[Scan]
 
 
 def _to_scan(message: Any, odometry: Pose, upside_down: bool, max_range: float) -> Scan:
-    stamp = message.header.stamp
-    ranges = np.array(message.ranges, dtype=np.float32)
-    angle_min, increment = float(message.angle_min), float(message.angle_increment)
-    if upside_down:  # mirrored, beam i points where bearing -(angle_min + i * increment) is
-        angle_min = -(angle_min + (len(ranges) - 1) * increment)
-        ranges = ranges[::-1].copy()
-    return Scan(
-        time=_seconds(stamp),
-        stamp=f"{stamp.sec}.{stamp.nanosec:09d}",
-        angle_min=angle_min,
-        angle_increment=increment,
-        range_min=float(message.range_min),
+    return scan_from_message(
+        whole_seconds=message.header.stamp.sec,
+        nanoseconds=message.header.stamp.nanosec,
+        angle_min=message.angle_min,
+        angle_increment=message.angle_increment,
+        range_min=message.range_min,
         range_max=min(float(message.range_max), max_range),
-        ranges=ranges,
+        ranges=message.ranges,
         odometry=odometry,
+        upside_down=upside_down,
     )

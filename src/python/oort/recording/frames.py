@@ -48,16 +48,14 @@ class FrameTree:
         self, parent: str, child: str, time: float, translation: Sequence[float], quaternion: Sequence[float]
     ) -> None:
         """Adds T_parent_child: translation x, y, z [m] and quaternion x, y, z, w of any length but zero."""
-        norm = math.hypot(*quaternion)
-        if not all(map(math.isfinite, (time, norm, *translation))) or norm < 1e-3:
+        rotation = unit_quaternion(*quaternion)
+        if rotation is None or not all(map(math.isfinite, (time, *translation))):
             self.unusable += 1
             return
-        x, y, z, w = (value / norm for value in quaternion)
         parents = self.links.setdefault(child, {})
         if parent not in parents:
-            parents[parent] = Link(_matrix(translation, x, y, z, w))
-        yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-        parents[parent].samples.extend((time, translation[0], translation[1], yaw))
+            parents[parent] = Link(_matrix(translation, *rotation))
+        parents[parent].samples.extend((time, translation[0], translation[1], heading(*rotation)))
 
     def above(self, frame: str) -> list[str]:
         """The frame and all frames above it, nearest first."""
@@ -116,6 +114,19 @@ class FrameTree:
         """All links, for messages."""
         pairs = [f"{parent} -> {child}" for child, parents in self.links.items() for parent in parents]
         return ", ".join(sorted(pairs)[:20]) or "no transforms"
+
+
+def unit_quaternion(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float] | None:
+    """The quaternion at length 1; None if it is not finite or has no length."""
+    norm = math.hypot(x, y, z, w)
+    if not math.isfinite(norm) or norm < 1e-3:
+        return None
+    return x / norm, y / norm, z / norm, w / norm
+
+
+def heading(x: float, y: float, z: float, w: float) -> float:
+    """The yaw [rad] of a unit quaternion."""
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def to_plane(T_base_sensor: NDArray[np.float64], sensor: str) -> tuple[Pose, bool]:  # noqa: N803

@@ -1,0 +1,10 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""A session that keeps up with a robot: what the ROS node drives, without ROS."""
+
+from oort.live.drawer import Drawing
+from oort.live.inbox import UnusableScanError
+from oort.live.session import Listener, LiveSession
+from oort.live.snapshot import Snapshot
+
+__all__ = ["Drawing", "Listener", "LiveSession", "Snapshot", "UnusableScanError"]

@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The queue of a live session: scans and calls in the order in which they came."""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from typing import Any
+
+from oort.recording import Scan
+
+PATIENCE = 10.0
+"""[s] that a scan waits for its odometry"""
+PATIENCE_BEFORE_CALL = 2.0
+"""[s] that scans wait on when a call has come that wants its turn after them"""
+
+
+class UnusableScanError(Exception):
+    """Says why a scan will never be mapped; the text is counted, so it names a kind of reason."""
+
+
+Resolve = Callable[[], Scan | None]
+"""Makes the scan once the odometry at its stamp is known; None before. Raises UnusableScanError."""
+
+
+@dataclass(eq=False, slots=True)
+class ScanItem:
+    """A scan that came in, perhaps before the odometry at its stamp."""
+
+    resolve: Resolve
+    arrived: float
+    """[s] time.monotonic()"""
+    scan: Scan | None = None
+    refused: str = ""
+    """why it cannot be mapped"""
+
+    def try_to_resolve(self) -> bool:
+        """Whether it is known by now what becomes of the scan."""
+        if self.scan is None and not self.refused:
+            try:
+                self.scan = self.resolve()
+            except UnusableScanError as error:
+                self.refused = str(error)
+        return self.scan is not None or bool(self.refused)
+
+
+@dataclass(eq=False, slots=True)
+class CallItem:
+    """A call that waits for its turn."""
+
+    name: str
+    args: Sequence[Any]
+    arrived: float
+    result: "Future[Any]" = field(default_factory=Future)
+
+
+class Inbox:
+    """First in, first out; thread-safe. The head stays in the queue, and counts, until it is popped."""
+
+    def __init__(self) -> None:
+        """An empty queue."""
+        self._changed = threading.Condition()
+        self._items: deque[ScanItem | CallItem] = deque()
+        self._unresolved: list[ScanItem] = []
+        self._calls: deque[CallItem] = deque()
+
+    def __len__(self) -> int:
+        """Scans and calls that wait, with the one that is being worked on."""
+        return len(self._items)
+
+    def add_scan(self, resolve: Resolve) -> None:
+        """Adds a scan at the end."""
+        item = ScanItem(resolve, time.monotonic())
+        with self._changed:
+            if not item.try_to_resolve():
+                self._unresolved.append(item)
+            self._items.append(item)
+            self._changed.notify()
+
+    def add_call(self, name: str, args: Sequence[Any]) -> "Future[Any]":
+        """Adds a call at the end; what becomes of it."""
+        item = CallItem(name, args, time.monotonic())
+        with self._changed:
+            self._items.append(item)
+            self._calls.append(item)
+            self._changed.notify()
+        return item.result
+
+    def poke(self) -> None:
+        """Says that odometry came: scans that waited for it may be ready."""
+        with self._changed:
+            if self._unresolved:
+                self._unresolved = [item for item in self._unresolved if not item.try_to_resolve()]
+                self._changed.notify()
+
+    def wake(self) -> None:
+        """Makes head() return."""
+        with self._changed:
+            self._changed.notify()
+
+    def head(self, mapping: bool, timeout: float) -> ScanItem | CallItem | None:
+        """The first item once it can be dealt with, or None after a while [s] or when woken.
+
+        Unless ``mapping``, a scan will not be used, so that it need not wait for its odometry.
+        """
+        with self._changed:
+            if not self._ready(mapping):
+                self._changed.wait(timeout)
+            return self._items[0] if self._ready(mapping) else None
+
+    def pop(self) -> None:
+        """The head is done with."""
+        with self._changed:
+            item = self._items.popleft()
+            if isinstance(item, CallItem):
+                self._calls.popleft()
+            elif item in self._unresolved:
+                self._unresolved.remove(item)
+
+    def abandon(self, error: Exception) -> None:
+        """Refuses all calls that still wait."""
+        with self._changed:
+            for call in self._calls:
+                call.result.set_exception(error)
+            self._items.clear()
+            self._calls.clear()
+            self._unresolved.clear()
+
+    def waiting(self) -> tuple[int, float]:
+        """How many scans wait for their odometry, and for how long the first of them has [s]."""
+        with self._changed:
+            if not self._unresolved:
+                return 0, 0.0
+            return len(self._unresolved), time.monotonic() - self._unresolved[0].arrived
+
+    def _ready(self, mapping: bool) -> bool:
+        if not self._items:
+            return False
+        item = self._items[0]
+        if isinstance(item, CallItem) or not mapping or item.scan is not None or item.refused:
+            return True
+        now = time.monotonic()
+        deadline = item.arrived + PATIENCE
+        if self._calls:
+            deadline = min(deadline, max(item.arrived, self._calls[0].arrived) + PATIENCE_BEFORE_CALL)
+        if now >= deadline:
+            item.refused = "no odometry at its stamp"
+        return bool(item.refused)
