@@ -1,12 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests share: where the real data is, and one simulated drive."""
+"""What the tests share: where the real data is, one simulated drive, and a live session."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from live_rig import Recorder
+from oort import Parameters
+from oort.live import LiveSession
 from oort.simulate import Drive, simulate_drive
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,3 +29,17 @@ def datasets() -> Path:
 def drive() -> Drive:
     """A drive through a made-up home."""
     return simulate_drive(seed=3)
+
+
+@pytest.fixture
+def recorder() -> Recorder:
+    """What hears all that `live` tells."""
+    return Recorder()
+
+
+@pytest.fixture
+def live(recorder: Recorder) -> Iterator[LiveSession]:
+    """A live session with the default parameters."""
+    session = LiveSession(Parameters(), recorder)
+    yield session
+    session.close()

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from oort import InputError
-from oort.events import Event, read_events
+from oort.events import Event, EventLog, read_events
 
 
 def write(path: Path, text: str) -> Path:
@@ -44,3 +44,13 @@ def test_says_what_is_wrong(tmp_path: Path, text: str, complaint: str) -> None:
 def test_missing_file() -> None:
     with pytest.raises(InputError, match="nowhere\\.json"):
         read_events("nowhere.json")
+
+
+def test_a_log_keeps_the_one_before(tmp_path: Path) -> None:
+    path = tmp_path / "log.json"
+    for name in ("map/start", "map/stop"):
+        log = EventLog(path)
+        log.add(1.0, name, [])
+        log.close()
+    assert [event.call for event in read_events(path)] == ["map/stop"]
+    assert [event.call for event in read_events(f"{path}.1")] == ["map/start"]

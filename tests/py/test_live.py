@@ -1,69 +1,26 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""A live session without ROS: the queue, the waiting, what readers see, saving beside the mapping."""
+"""A live session without ROS: the queue, the waiting, what readers see, and what must not end its threads."""
 
 import threading
 import time
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from oort import MapFileError, Parameters, StateError, load_map
+from live_rig import Recorder, drive, driven, until
+from oort import InputError, MapFileError, Parameters, StateError, load_map
 from oort._core import Saved
 from oort.events import EventLog, read_events
-from oort.live import Drawing, Listener, LiveSession, Snapshot, UnusableScanError
+from oort.live import Drawing, LiveSession, Snapshot, UnusableScanError
+from oort.live.figures import Drops, Figures, Tracking
 from oort.live.inbox import CallItem, Inbox, ScanItem
-from oort.locations import Pose
 from oort.recording import Scan
 from oort.session import State
 from scenes import room_scan
-
-
-class Recorder(Listener):
-    def __init__(self) -> None:
-        self.drawings: list[Drawing] = []
-        self.saves: list[Saved] = []
-        self.troubles: list[str] = []
-        self.poses: list[Pose | None] = []
-
-    def scan_taken(self, snapshot: Snapshot) -> None:
-        self.poses.append(snapshot.odom_pose)
-
-    def drawn(self, drawing: Drawing) -> None:
-        self.drawings.append(drawing)
-
-    def saved(self, what: Saved) -> None:
-        self.saves.append(what)
-
-    def trouble(self, text: str) -> None:
-        self.troubles.append(text)
-
-
-@pytest.fixture
-def recorder() -> Recorder:
-    return Recorder()
-
-
-@pytest.fixture
-def live(recorder: Recorder) -> Iterator[LiveSession]:
-    session = LiveSession(Parameters(), recorder)
-    yield session
-    session.close()
-
-
-def until(condition: Callable[[], bool], timeout: float = 10.0) -> None:
-    deadline = time.monotonic() + timeout
-    while not condition():
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.005)
-
-
-def drive(live: LiveSession, scans: int = 60, start: float = 0.0) -> None:
-    for i in range(scans):
-        scan = room_scan(0.01 * i, 0.0, 0.02 * i, start + 0.1 * i)
-        live.add_scan(lambda scan=scan: scan)  # type: ignore[misc]
 
 
 def test_stop_waits_for_the_queue(live: LiveSession, recorder: Recorder, tmp_path: Path) -> None:
@@ -73,12 +30,12 @@ def test_stop_waits_for_the_queue(live: LiveSession, recorder: Recorder, tmp_pat
     live.call("map/stop")
     assert len(live.inbox) == 0
     assert len(recorder.poses) == 200
-    assert not live.drops
+    assert not live.figures.drops.counts
     assert live.snapshot.state is State.NOT_MAPPING
     assert live.snapshot.odom_pose is None
     assert recorder.saves[-1] is Saved.MAP
     assert len(load_map(path)) == live.snapshot.num_nodes == len(recorder.drawings[-1].map)
-    assert live.latest_map() is recorder.drawings[-1]
+    assert live.gallery.latest(live.snapshot.revision) is recorder.drawings[-1]
 
 
 def test_scans_wait_for_their_odometry(live: LiveSession, recorder: Recorder) -> None:
@@ -93,7 +50,7 @@ def test_scans_wait_for_their_odometry(live: LiveSession, recorder: Recorder) ->
     known.extend(scans)
     live.inbox.poke()
     until(lambda: len(recorder.poses) == 20)
-    assert not live.drops
+    assert not live.figures.drops.counts
 
 
 def test_a_call_does_not_wait_for_ever_on_odometry(live: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,7 +59,7 @@ def test_a_call_does_not_wait_for_ever_on_odometry(live: LiveSession, monkeypatc
     for _ in range(5):
         live.add_scan(lambda: None)
     live.call("map/stop")
-    assert live.drops == {"no odometry at its stamp": 5}
+    assert live.figures.drops.counts == {"no odometry at its stamp": 5}
 
 
 def test_scans_that_cannot_be_used_are_counted_by_reason(live: LiveSession, recorder: Recorder) -> None:
@@ -114,7 +71,7 @@ def test_scans_that_cannot_be_used_are_counted_by_reason(live: LiveSession, reco
     bad = replace(room_scan(0, 0, 0, 0.0), angle_increment=float("nan"))
     live.add_scan(lambda: bad)
     live.call("map/stop")
-    assert live.drops == {"older than the odometry": 1, "unusable": 1}
+    assert live.figures.drops.counts == {"older than the odometry": 1, "unusable": 1}
     assert "left out" in recorder.troubles[0]
 
 
@@ -124,46 +81,6 @@ def test_scans_without_odometry_do_not_hold_up_the_start(live: LiveSession) -> N
     started = time.monotonic()
     live.call("map/start", [""])
     assert time.monotonic() - started < 1.0
-
-
-def test_create_right_after_start(live: LiveSession) -> None:
-    live.call("map/start", [""])
-    with pytest.raises(StateError, match="none is arriving"):
-        live.create_location("dock", "dock")
-    ready = threading.Event()
-    scan = room_scan(0, 0, 0, 0.0)
-    live.add_scan(lambda: scan if ready.is_set() else None)
-    live.add_scan(lambda: scan if ready.is_set() else None)
-    assert not live.is_ready
-    live.create_location("dock", "dock")
-    with pytest.raises(StateError, match="ask again later"):
-        live.locate("dock", "dock")
-    ready.set()
-    live.inbox.poke()
-    until(lambda: ("dock", "dock") in live.snapshot.places)
-    assert live.locate("dock", "dock") == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
-    assert live.is_ready
-
-
-def test_places_need_a_localiser_when_nothing_is_mapped(recorder: Recorder, tmp_path: Path) -> None:
-    poses: list[Pose] = []
-    live = LiveSession(Parameters(), recorder, localiser=lambda: poses[-1] if poses else None)
-    with pytest.raises(StateError, match="no map"):
-        live.create_location("", "here")
-    live.call("map/start", [str(tmp_path / "map")])
-    drive(live)
-    live.call("map/stop")
-    assert not live.is_ready
-    with pytest.raises(StateError, match="start a localiser"):
-        live.create_location("a", "here")
-    poses.append((0.3, 0.1, 0.5))
-    assert live.is_ready
-    recorder.saves.clear()
-    live.create_location("a", "here")
-    assert live.locate("a", "here") == pytest.approx((0.3, 0.1, 0.5))
-    assert recorder.saves == [Saved.METADATA]
-    assert [place[1] for place in load_map(str(tmp_path / "map")).locations] == ["here"]
-    live.close()
 
 
 def test_errors_of_calls(live: LiveSession, tmp_path: Path) -> None:
@@ -197,80 +114,14 @@ def test_a_failed_load_keeps_the_map(live: LiveSession, tmp_path: Path) -> None:
     assert live.has_map
 
 
-def test_autosave_by_the_given_clock(recorder: Recorder, tmp_path: Path) -> None:
-    now = [100.0]
-    live = LiveSession(Parameters(), recorder, clock=lambda: now[0])
-    live.call("map/start", [str(tmp_path / "map")])
-    drive(live, 30)
-    until(lambda: recorder.saves == [Saved.MAP] and len(live.inbox) == 0)  # with the first node
-    first = len(load_map(str(tmp_path / "map")))
-    drive(live, 60, start=3.0)
-    until(lambda: len(live.inbox) == 0)
-    now[0] += 14.0
-    time.sleep(0.3)
-    assert len(recorder.saves) == 1
-    now[0] += 1.5
-    until(lambda: len(recorder.saves) == 2)
-    assert len(load_map(str(tmp_path / "map"))) > first
-    now[0] += 60.0
-    time.sleep(0.5)
-    assert len(recorder.saves) == 2  # nothing is new
-    live.close()
-
-
-def test_closing_saves(recorder: Recorder, tmp_path: Path) -> None:
-    live = LiveSession(Parameters(), recorder, clock=lambda: 0.0)
-    live.call("map/start", [str(tmp_path / "map")])
-    drive(live, 200)
-    live.close()
-    assert len(load_map(str(tmp_path / "map"))) == live.snapshot.num_nodes > 5
-
-
-def test_a_save_that_fails_is_told_and_made_up_for(
-    live: LiveSession, recorder: Recorder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full_disk(*_: object) -> Saved:
-        raise MapFileError("no space left on device")
-
-    live.call("map/start", [str(tmp_path / "map")])
-    with monkeypatch.context() as patch:
-        patch.setattr("oort.live.saver.save", full_disk)
-        drive(live)
-        with pytest.raises(MapFileError, match="no space"):
-            live.call("map/stop")
-    assert live.saver.error
-    assert "not saved" in recorder.troubles[-1]
-    assert live.snapshot.state is State.NOT_MAPPING
-    live.close()
-    assert len(load_map(str(tmp_path / "map"))) > 0
-
-
 def test_a_clock_that_is_set_back_makes_a_loose_link(live: LiveSession, recorder: Recorder) -> None:
     live.call("map/start", [""])
     drive(live, 30, start=100.0)
     drive(live, 30, start=0.0)
     live.call("map/stop")
     assert "went back by 102.9 s" in recorder.troubles[0]
-    assert live.clock_jumps == 1
+    assert live.figures.clock_jumps == 1
     assert len(recorder.poses) == 60
-
-
-def test_has_map_and_clear(live: LiveSession) -> None:
-    assert not live.has_map
-    live.call("map/start", [""])
-    drive(live)
-    live.call("map/stop")
-    assert live.has_map
-    live.call("map/clear")
-    assert not live.has_map
-    assert live.snapshot.places == {}
-    live.call("map/start", [""])
-
-
-def test_no_map_within_the_time(live: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("oort.live.session.MAP_TIMEOUT", 0.3)
-    with pytest.raises(StateError, match="no map"):
-        live.latest_map()
 
 
 def test_the_log_replays(recorder: Recorder, tmp_path: Path) -> None:
@@ -278,7 +129,7 @@ def test_the_log_replays(recorder: Recorder, tmp_path: Path) -> None:
     live = LiveSession(Parameters(), recorder, event_log=log)
     live.call("map/start", [""])
     drive(live, 3)
-    live.create_location("a", "b")
+    live.places.create("a", "b")
     with pytest.raises(StateError):
         live.call("map/load", ["relative"])
     live.call("map/stop")
@@ -299,3 +150,151 @@ def test_inbox_is_in_order_and_counts_the_head() -> None:
     assert isinstance(inbox.head(True, 0.0), CallItem)
     inbox.pop()
     assert inbox.head(True, 0.0) is None
+
+
+def test_a_scan_that_cannot_be_made_holds_up_no_other(live: LiveSession, recorder: Recorder) -> None:
+    ready = threading.Event()
+
+    def tilted() -> Scan | None:
+        if ready.is_set():
+            raise InputError("the laser is tilted by 12 degrees")
+        return None
+
+    scans = [room_scan(0.01 * i, 0.0, 0.0, 0.1 * i) for i in range(5)]
+    live.call("map/start", [""])
+    live.add_scan(tilted)
+    for scan in scans:
+        live.add_scan(lambda scan=scan: scan if ready.is_set() else None)  # type: ignore[misc]
+    ready.set()
+    live.inbox.poke()
+    live.add_scan(tilted)
+    until(lambda: len(live.inbox) == 0, 1.0)
+    assert len(recorder.poses) == 5
+    assert live.figures.drops.counts == {"unusable": 2}
+    assert recorder.troubles == ["a scan was left out: the laser is tilted by 12 degrees"]
+
+
+def test_a_listener_that_fails_ends_nothing(tmp_path: Path) -> None:
+    class Broken(Recorder):
+        def scan_taken(self, snapshot: Snapshot) -> None:
+            raise RuntimeError("no")
+
+        def call_made(self, snapshot: Snapshot) -> None:
+            raise RuntimeError("no")
+
+        def drawn(self, drawing: Drawing) -> None:
+            raise RuntimeError("no")
+
+        def saved(self, what: Saved) -> None:
+            raise RuntimeError("no")
+
+        def trouble(self, text: str) -> None:
+            raise RuntimeError("no")
+
+    live = LiveSession(Parameters(), Broken())
+    live.call("map/start", [str(tmp_path / "map")])
+    live.add_scan(lambda: replace(room_scan(0, 0, 0, 0.0), angle_increment=float("nan")))
+    drive(live)
+    live.call("map/stop")
+    live.redraw()
+    assert live.figures.scans_mapped == 60
+    assert not live.keeper.saver.error
+    assert len(load_map(str(tmp_path / "map"))) == live.snapshot.num_nodes > 0
+    live.close()
+
+
+def test_a_log_that_fails_is_told_and_ends_nothing(recorder: Recorder) -> None:
+    class Broken(EventLog):
+        def __init__(self) -> None: ...
+
+        def add(self, t: float, call: str, args: Any) -> None:
+            raise TypeError("not to be written")
+
+    live = LiveSession(Parameters(), recorder, event_log=Broken())
+    live.call("map/start", [""])
+    driven(live, 3)
+    assert live.figures.scans_mapped == 3
+    assert recorder.troubles[0] == "the events log lacks map/start: not to be written"
+    live.close()
+
+
+def test_calls_after_the_end_fail_at_once(live: LiveSession) -> None:
+    live.close()
+    for call in (lambda: live.call("map/stop"), live.redraw):
+        with pytest.raises(StateError, match="being shut down"):
+            call()
+    live.add_scan(lambda: None)
+    assert len(live.inbox) == 0
+
+
+def test_the_caller_of_stop_hears_of_it_after_the_listener(live: LiveSession, recorder: Recorder) -> None:
+    live.call("map/start", [""])
+    drive(live)
+    live.call("map/stop")
+    assert [snapshot.state for snapshot in recorder.calls] == [State.MAPPING, State.NOT_MAPPING]
+    assert recorder.calls[-1].odom_pose is None
+
+
+def test_a_new_chain_may_be_of_any_time(live: LiveSession, recorder: Recorder, tmp_path: Path) -> None:
+    live.call("map/start", [""])
+    drive(live, start=100.0)
+    live.call("map/stop")
+    live.call("map/resume", [str(tmp_path / "map"), [0.0, 0.0, 0.0]])
+    driven(live, start=0.0)
+    assert live.figures.clock_jumps == 0
+    assert not recorder.troubles
+
+
+def test_a_place_that_is_no_dock_is_told(live: LiveSession, recorder: Recorder) -> None:
+    live.call("map/start", [""])
+    driven(live, 1)
+    live.places.create("dock", "dock")
+    driven(live)
+    nothing = replace(room_scan(0.6, 0, 1.2, 7.0), ranges=room_scan(0, 0, 0, 0.0).ranges * float("nan"))
+    live.add_scan(lambda: nothing)
+    before = live.snapshot.closures
+    live.call("map/notify_docked")
+    assert live.snapshot.closures == before
+    assert recorder.troubles[-1].startswith("map/notify_docked: nothing was linked")
+
+
+# ---- figures ----
+
+
+def test_drops_are_told_once_in_a_while(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [100.0]
+    monkeypatch.setattr("oort.live.figures.time.monotonic", lambda: now[0])
+    drops = Drops()
+    assert drops.of_late() == []
+    assert drops.add("late", "it was late") == "a scan was left out: it was late"
+    assert drops.add("odd", "it was odd") == "a scan was left out: it was odd"
+    now[0] += 9.0
+    assert drops.add("late", "it was late") == ""
+    assert drops.of_late() == ["late"]
+    now[0] += 1.1
+    assert drops.add("late", "it was very late") == "2 scans were left out: it was very late"
+    assert drops.counts == {"late": 3, "odd": 1}
+    now[0] += 5.1
+    assert drops.of_late() == []
+
+
+def test_tracking_begins_anew_with_a_new_map() -> None:
+    def missed() -> Tracking:
+        figures.mapped(SimpleNamespace(status="no overlap"), 0.001)  # type: ignore[arg-type]
+        return figures.tracking(State.MAPPING)
+
+    figures = Figures()
+    assert figures.tracking(State.MAPPING) is Tracking.IDLE
+    assert [missed() for _ in range(20)] == 19 * [Tracking.UNCERTAIN] + [Tracking.LOST]
+    assert figures.tracking(State.PAUSED) is Tracking.IDLE
+    figures.forget()
+    assert figures.tracking(State.MAPPING) is Tracking.IDLE
+    assert missed() is Tracking.UNCERTAIN
+
+
+def test_clear_forgets_how_tracking_went(live: LiveSession) -> None:
+    live.call("map/start", [""])
+    driven(live)
+    assert live.figures.tracking(State.MAPPING) is Tracking.TRACKING
+    live.call("map/clear")
+    assert live.figures.tracking(State.MAPPING) is Tracking.IDLE

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from oort import InputError, Parameters, Session, StateError, load_map
+from oort import InputError, MapFileError, Parameters, Session, StateError, load_map
 from oort.recording import Scan
 from scenes import room_scan
 
@@ -181,6 +181,62 @@ def test_useless_scans_are_survived(session: Session) -> None:
         session.add_scan(Scan(30.0, "30", -1.5, 0.1, 0.05, 6.0, nothing, (np.nan, 0.0, 0.0)))
     drive_around(session, start=40.0)
     assert session.mapper.sensor_pose == pytest.approx((0.59, 0.0, 1.18), abs=0.02)
+
+
+def test_resume_far_from_the_map_is_refused(session: Session, tmp_path: Path) -> None:
+    session.start()
+    drive_around(session)
+    session.stop()
+    with pytest.raises(StateError, match=r"\(90000, 0\) is 90000 m from the map; give the sensor's pose"):
+        session.resume(str(tmp_path / "new"), (90000.0, 0.0, 0.0))
+    assert state_of(session) == "not_mapping"
+    session.resume(str(tmp_path / "new"), (50.0, 0.0, 0.0))
+
+
+def test_a_place_that_got_its_pose_is_saved(session: Session, tmp_path: Path) -> None:
+    session.start(str(tmp_path / "map"))
+    session.create_location("dock", "dock")
+    assert not list(tmp_path.iterdir())
+    drive_around(session, scans=1)
+    assert [place[:2] for place in load_map(str(tmp_path / "map")).locations] == [("dock", "dock")]
+
+
+def test_a_place_without_a_pose_does_not_outlive_its_drive(session: Session, tmp_path: Path) -> None:
+    session.start()
+    drive_around(session)
+    session.pause()
+    session.resume_from_paused()
+    session.create_location("a", "b")
+    assert session.locations.waiting == [("a", "b")]
+    session.stop()
+    session.resume(str(tmp_path / "map"), (0.0, 0.0, 0.0))
+    drive_around(session, start=10.0)
+    assert not session.locations.list_namespaces()
+
+
+def test_only_other_paths_are_prepared(tmp_path: Path) -> None:
+    prepared: list[tuple[str, str]] = []
+
+    def prepare(call: str, path: str) -> None:
+        if "no" in path:
+            raise MapFileError("no")
+        prepared.append((call, path))
+
+    session = Session(Parameters(), prepare=prepare)
+    a, b = str(tmp_path / "a"), str(tmp_path / "b")
+    with pytest.raises(MapFileError):
+        session.start(str(tmp_path / "no"))
+    assert (state_of(session), session.path) == ("not_mapping", "")
+    for path in (a, f"{a}.map_capnp", "", a):
+        session.start(path)
+    drive_around(session)
+    session.stop()
+    with pytest.raises(StateError):
+        session.start(b)
+    with pytest.raises(StateError):
+        session.resume(a, (0.0, 0.0, 0.0))
+    session.resume(b, (0.0, 0.0, 0.0))
+    assert prepared == [("map/start", a), ("map/start", a), ("map/resume", b)]
 
 
 def test_same_events_same_bytes(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The events file: the service calls of a drive, so that it can be replayed."""
 
+import contextlib
 import errno
 import json
 import os
@@ -62,10 +63,12 @@ class EventLog:
     _END = b"\n]\n"
 
     def __init__(self, path: str | Path) -> None:
-        """Begins the file anew. Raises InputError if it cannot be written."""
+        """Begins the file anew; one that is there becomes ``path`` with .1. Raises InputError if that fails."""
         self._path = path
         self._size = 1  # without the end
         try:
+            if os.path.isfile(path):
+                os.replace(path, f"{path}.1")
             self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o644)
             os.write(self._file, b"[" + self._END)
         except OSError as error:
@@ -79,8 +82,9 @@ class EventLog:
             if os.pwrite(self._file, text + self._END, self._size) < len(text + self._END):
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         except OSError as error:
-            os.pwrite(self._file, self._END, self._size)  # where something has been, there is room
-            os.ftruncate(self._file, self._size + len(self._END))
+            with contextlib.suppress(OSError):
+                os.pwrite(self._file, self._END, self._size)  # where something has been, there is room
+                os.ftruncate(self._file, self._size + len(self._END))
             raise InputError(f"{self._path}: an entry of the events log is lost: {error.strerror}") from error
         self._size += len(text)
 

@@ -61,12 +61,23 @@ class Locations:
         if points:
             self._mapper.create_points(list(name_spaces), [(float(p[0]), float(p[1])) for p in points], list(ids))
 
-    def settle(self) -> None:
-        """Gives the waiting places the current pose, if there is one by now."""
-        if self._waiting and self._mapper.has_pose:
-            for request in self._waiting:
-                self._mapper.create_location(request.name_space, request.id, self._mapper.sensor_pose)
-            self._waiting.clear()
+    @property
+    def waiting(self) -> list[tuple[str, str]]:
+        """(namespace, id) of the places that have no pose yet."""
+        return [(request.name_space, request.id) for request in self._waiting]
+
+    def settle(self) -> bool:
+        """Gives the waiting places the current pose, if there is one by now; whether that changed anything."""
+        if not self._waiting or not self._mapper.has_pose:
+            return False
+        for request in self._waiting:
+            self._mapper.create_location(request.name_space, request.id, self._mapper.sensor_pose)
+        self._waiting.clear()
+        return True
+
+    def give_up_waiting(self) -> None:
+        """Forgets the places that have no pose yet: the drive that they were to be in is over."""
+        self._waiting.clear()
 
     def list_ids(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
         """All (namespace, id) of a namespace, or of all that begin with it."""

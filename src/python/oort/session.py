@@ -9,10 +9,14 @@ import enum
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 from oort._core import Map, Mapper, Parameters, Saved, ScanResult, load_map, normalise_map_path, save_map, save_metadata
 from oort.errors import StateError
 from oort.locations import Locations, Pose
 from oort.recording import Scan
+
+_FAR = 100.0  # [m] from all that was mapped: no robot was carried there, the pose is wrong
 
 
 class State(enum.Enum):
@@ -27,6 +31,10 @@ Save = Callable[[str, Map, Saved], object]
 """Writes a map, or only its places, to a path."""
 
 
+Prepare = Callable[[str, str], object]
+"""Hears of a call, and of the path that it gives the map, before it takes effect; raises MapFileError to refuse."""
+
+
 def save(path: str, map_: Map, what: Saved) -> Saved:
     """Writes a map, or only its places where the rest on disk fits them; what was written. Raises MapFileError."""
     if what is Saved.METADATA:
@@ -38,11 +46,22 @@ def save(path: str, map_: Map, what: Saved) -> Saved:
 class Session:
     """Takes scans and calls one at a time, in order."""
 
-    def __init__(self, parameters: Parameters, sensor_on_base: Pose = (0.0, 0.0, 0.0), save: Save = save) -> None:
-        """Starts empty and not mapping; ``sensor_on_base`` is T_base_sensor, ``save`` is how maps reach the disk."""
+    def __init__(
+        self,
+        parameters: Parameters,
+        sensor_on_base: Pose = (0.0, 0.0, 0.0),
+        *,
+        save: Save = save,
+        prepare: Prepare = lambda call, path: None,
+    ) -> None:
+        """Starts empty and not mapping; ``sensor_on_base`` is T_base_sensor.
+
+        ``save`` is how maps reach the disk; ``prepare`` makes a path of map/start or map/resume ready for that.
+        """
         self._parameters = parameters
         self._sensor_on_base = sensor_on_base
         self._save = save
+        self._prepare = prepare
         self._state = State.NOT_MAPPING
         self._path = ""
         self._use(self._new_mapper())
@@ -111,7 +130,8 @@ class Session:
         result = self._mapper.add_scan(
             scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, scan.odometry
         )
-        self._locations.settle()
+        if self._locations.settle():
+            self._write(Saved.METADATA)
         return result
 
     # ---- map calls ----
@@ -119,14 +139,13 @@ class Session:
     def start(self, path: str = "") -> None:
         """Begins a map, or goes on after a pause; ``path`` is where it is saved, empty for nowhere."""
         _check_text(path=path)
+        if self._state is State.NOT_MAPPING and self._mapper.num_nodes > 0:
+            raise StateError("map/start: there is a map already; call map/clear first, or map/resume to go on with it")
+        if path and not self._is_own(path):
+            self._prepare("map/start", path)
         if self._state is State.PAUSED:
             self.resume_from_paused()
-        elif self._state is State.NOT_MAPPING:
-            if self._mapper.num_nodes > 0:
-                raise StateError(
-                    "map/start: there is a map already; call map/clear first, or map/resume to go on with it"
-                )
-            self._state = State.MAPPING
+        self._state = State.MAPPING
         self._path = path
 
     def mount_sensor(self, sensor_on_base: Pose) -> None:
@@ -158,18 +177,25 @@ class Session:
         if self._mapper.num_nodes == 0:
             raise StateError("map/resume: no map is loaded; call map/load first")
         _check_text(path=path)
-        if path and self._path and normalise_map_path(path) == normalise_map_path(self._path):
+        if path and self._is_own(path):
             raise StateError(f"map/resume: {path} is the map to go on with, which stays as it is; give another path")
         x, y, theta = (float(value) for value in pose)
+        distance = np.hypot(*(self.map.node_poses[:, :2] - (x, y)).T).min()
+        if distance > _FAR:
+            raise StateError(
+                f"map/resume: ({x:g}, {y:g}) is {distance:.0f} m from the map; give the sensor's pose in the map frame"
+            )
+        if path:
+            self._prepare("map/resume", path)
         self._mapper.begin_session((x, y, theta))
         self._path = path
         self._state = State.MAPPING
 
-    def notify_docked(self) -> None:
-        """Says that the robot stands at the dock it saw earlier."""
+    def notify_docked(self) -> bool:
+        """Says that the robot stands at the dock it saw earlier; whether what it sees now fits the dock."""
         if self._state is not State.MAPPING:
             raise StateError(f"map/notify_docked: the state is {self._state.value}; it needs mapping")
-        self._mapper.notify_docked()
+        return self._mapper.notify_docked()
 
     def pause(self) -> None:
         """Stops taking scans until resume_from_paused or start."""
@@ -186,9 +212,10 @@ class Session:
             self._state = State.MAPPING
 
     def stop(self) -> None:
-        """Ends mapping with a last solve, and saves the map if there is a path."""
+        """Ends mapping with a last solve, and saves the map if there is a path. Places without a pose are given up."""
         if self._state is not State.NOT_MAPPING:
             self._mapper.finish()
+            self._locations.give_up_waiting()
             self._state = State.NOT_MAPPING
         self._write(Saved.MAP)
 
@@ -236,6 +263,10 @@ class Session:
         """Changes of places reach the disk at once; the rest of the map when mapping stops or save() is called."""
         if self._path and self._mapper.num_nodes > 0:
             self._save(self._path, self._mapper.map(), what)
+
+    def _is_own(self, path: str) -> bool:
+        """Whether that is where the map is saved already."""
+        return bool(self._path) and normalise_map_path(path) == normalise_map_path(self._path)
 
     def _new_mapper(self) -> Mapper:
         return Mapper(self._parameters, self._sensor_on_base)

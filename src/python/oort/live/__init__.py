@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A session that keeps up with a robot: what the ROS node drives, without ROS."""
 
-from oort.live.drawer import Drawing
 from oort.live.inbox import UnusableScanError
-from oort.live.session import Listener, LiveSession
-from oort.live.snapshot import Snapshot
+from oort.live.listener import Listener
+from oort.live.session import LiveSession
+from oort.live.snapshot import Drawing, Snapshot
 
 __all__ = ["Drawing", "Listener", "LiveSession", "Snapshot", "UnusableScanError"]

@@ -8,14 +8,20 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
+from oort._core import Saved
+from oort.live.snapshot import Drawing
 from oort.recording import Scan
 
 PATIENCE = 10.0
 """[s] that a scan waits for its odometry"""
 PATIENCE_BEFORE_CALL = 2.0
 """[s] that scans wait on when a call has come that wants its turn after them"""
+
+
+UNUSABLE = "unusable"
+"""The reason of scans that cannot be mapped for whatever else is wrong with them."""
 
 
 class UnusableScanError(Exception):
@@ -35,7 +41,9 @@ class ScanItem:
     """[s] time.monotonic()"""
     scan: Scan | None = None
     refused: str = ""
-    """why it cannot be mapped"""
+    """the kind of reason why it cannot be mapped"""
+    why: str = ""
+    """the reason in full"""
 
     def try_to_resolve(self) -> bool:
         """Whether it is known by now what becomes of the scan."""
@@ -43,8 +51,24 @@ class ScanItem:
             try:
                 self.scan = self.resolve()
             except UnusableScanError as error:
-                self.refused = str(error)
+                self.refuse(str(error))
+            except Exception as error:  # whatever is wrong with one scan, the others go on
+                self.refuse(UNUSABLE, str(error) or repr(error))
         return self.scan is not None or bool(self.refused)
+
+    def refuse(self, reason: str, why: str = "") -> None:
+        """It will not be mapped."""
+        self.refused, self.why = reason, why or reason
+
+
+class Answer(NamedTuple):
+    """What a call gives, and what its caller may wait for beside it."""
+
+    result: Any
+    saves: "Sequence[Future[Saved]]"
+    """their failure is the call's"""
+    drawing: "Future[Drawing] | None"
+    """the map as the call leaves it, where it shows one"""
 
 
 @dataclass(eq=False, slots=True)
@@ -54,7 +78,7 @@ class CallItem:
     name: str
     args: Sequence[Any]
     arrived: float
-    result: "Future[Any]" = field(default_factory=Future)
+    result: "Future[Answer]" = field(default_factory=Future)
 
 
 class Inbox:
@@ -66,6 +90,7 @@ class Inbox:
         self._items: deque[ScanItem | CallItem] = deque()
         self._unresolved: list[ScanItem] = []
         self._calls: deque[CallItem] = deque()
+        self._closed: Exception | None = None
 
     def __len__(self) -> int:
         """Scans and calls that wait, with the one that is being worked on."""
@@ -75,15 +100,20 @@ class Inbox:
         """Adds a scan at the end."""
         item = ScanItem(resolve, time.monotonic())
         with self._changed:
+            if self._closed is not None:
+                return
             if not item.try_to_resolve():
                 self._unresolved.append(item)
             self._items.append(item)
             self._changed.notify()
 
-    def add_call(self, name: str, args: Sequence[Any]) -> "Future[Any]":
+    def add_call(self, name: str, args: Sequence[Any]) -> "Future[Answer]":
         """Adds a call at the end; what becomes of it."""
         item = CallItem(name, args, time.monotonic())
         with self._changed:
+            if self._closed is not None:
+                item.result.set_exception(self._closed)
+                return item.result
             self._items.append(item)
             self._calls.append(item)
             self._changed.notify()
@@ -120,9 +150,10 @@ class Inbox:
             elif item in self._unresolved:
                 self._unresolved.remove(item)
 
-    def abandon(self, error: Exception) -> None:
-        """Refuses all calls that still wait."""
+    def close(self, error: Exception) -> None:
+        """Takes no more scans, and refuses the calls that still wait and those to come."""
         with self._changed:
+            self._closed = error
             for call in self._calls:
                 call.result.set_exception(error)
             self._items.clear()
@@ -147,5 +178,5 @@ class Inbox:
         if self._calls:
             deadline = min(deadline, max(item.arrived, self._calls[0].arrived) + PATIENCE_BEFORE_CALL)
         if now >= deadline:
-            item.refused = "no odometry at its stamp"
+            item.refuse("no odometry at its stamp")
         return bool(item.refused)

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a live session looks like between two events."""
+"""What a live session looks like between two events, and how its map is drawn."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field, replace
 
+from oort._core import Map, OccupancyGrid
 from oort.locations import Pose
 from oort.session import Session, State
 
@@ -14,7 +15,7 @@ class Snapshot:
     """Everything that readers ask for; it never changes, so that no reader waits for the mapping."""
 
     revision: int = 0
-    """counts up with every change of the map"""
+    """counts up with every change of the map; places may change without"""
     state: State = State.NOT_MAPPING
     path: str = ""
     num_nodes: int = 0
@@ -22,27 +23,43 @@ class Snapshot:
     """T_map_odom while mapping; while paused, as it was last"""
     places: Mapping[tuple[str, str], Pose] = field(default_factory=dict)
     """T_map_place by namespace and id"""
+    waiting: Set[tuple[str, str]] = frozenset()
+    """places that get their pose with the next scan"""
     closures: int = 0
     """loops and docks that were closed"""
 
 
-def look_at(session: Session, before: Snapshot, changed: bool) -> Snapshot:
-    """The session now; ``changed``: whether the map may differ from ``before``."""
-    mapper = session.mapper
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawing:
+    """A map as it was at one moment."""
+
+    revision: int
+    """of its Snapshot"""
+    grid: OccupancyGrid
+    cleaned: OccupancyGrid
+    """without speckle noise"""
+    map: Map
+
+
+def glance(session: Session, before: Snapshot) -> Snapshot:
+    """The session now, where neither map nor places can differ from ``before``."""
     odom_pose = before.odom_pose
     if session.state is State.NOT_MAPPING:
         odom_pose = None
-    elif session.state is State.MAPPING and mapper.has_pose:
-        odom_pose = mapper.odom_pose
-    if not changed:
-        return replace(before, state=session.state, path=session.path, odom_pose=odom_pose)
+    elif session.state is State.MAPPING and session.mapper.has_pose:
+        odom_pose = session.mapper.odom_pose
+    return replace(before, state=session.state, path=session.path, odom_pose=odom_pose)
+
+
+def look_at(session: Session, before: Snapshot, map_changed: bool) -> Snapshot:
+    """The session now; ``map_changed``: whether its map may differ from ``before``."""
+    mapper = session.mapper
     locations = ((space, id, mapper.locate(space, id)) for space, id, *_ in mapper.locations)
-    return Snapshot(
-        revision=before.revision + 1,
-        state=session.state,
-        path=session.path,
+    return replace(
+        glance(session, before),
+        revision=before.revision + map_changed,
         num_nodes=mapper.num_nodes,
-        odom_pose=odom_pose,
         places={(space, id): pose for space, id, pose in locations if pose is not None},
+        waiting=frozenset(session.locations.waiting),
         closures=sum(mapper.statistics[kind]["accepted"] for kind in ("loops", "docks")),
     )

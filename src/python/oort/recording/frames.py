@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from oort.errors import InputError
 from oort.poses import between
@@ -82,8 +82,11 @@ class FrameTree:
 
     def mount(self, base: str, sensor: str) -> NDArray[np.float64]:
         """T_base_sensor (4, 4). Raises InputError if there is no transform or it varies."""
-        if base == sensor:
-            return np.eye(4)
+        up, down = self.ways(base, sensor)
+        return np.asarray(np.linalg.inv(self._fixed(up)) @ self._fixed(down), dtype=np.float64)
+
+    def ways(self, base: str, sensor: str) -> tuple[list[str], list[str]]:
+        """From base and from sensor up to where they meet (way_up). Raises InputError if they do not."""
         above_sensor = self.above(sensor)
         common = next((frame for frame in self.above(base) if frame in above_sensor), None)
         if common is None:
@@ -91,8 +94,7 @@ class FrameTree:
                 f"no transform leads from the base's frame {base!r} to the laser's {sensor!r}; the bag has "
                 f"{self.describe()}. Record /tf and /tf_static"
             )
-        T_base_common = np.linalg.inv(self._fixed(self.way_up(base, common)))
-        return np.asarray(T_base_common @ self._fixed(self.way_up(sensor, common)), dtype=np.float64)
+        return self.way_up(base, common), self.way_up(sensor, common)
 
     def _fixed(self, way: list[str]) -> NDArray[np.float64]:
         """T_last_first of a way up whose transforms must not vary."""
@@ -100,13 +102,9 @@ class FrameTree:
         for child, parent in pairwise(way):
             link = self.links[child][parent]
             poses = link.by_time()[:, 1:]
-            changes = np.abs(between(poses[0], poses)).max(axis=0)
-            if max(changes[0], changes[1]) > _FIXED[0] or changes[2] > _FIXED[1]:
-                raise InputError(
-                    f"the transform {parent} -> {child} between the robot's base and its laser varies by "
-                    f"{max(changes[0], changes[1]):.2f} m and {math.degrees(changes[2]):.1f} degrees; the laser must "
-                    "be fixed on the base"
-                )
+            variation = describe_variation(parent, child, poses[0], poses)
+            if variation:
+                raise InputError(variation)
             total = link.first @ total
         return total
 
@@ -114,6 +112,18 @@ class FrameTree:
         """All links, for messages."""
         pairs = [f"{parent} -> {child}" for child, parents in self.links.items() for parent in parents]
         return ", ".join(sorted(pairs)[:20]) or "no transforms"
+
+
+def describe_variation(parent: str, child: str, first: ArrayLike, others: ArrayLike) -> str:
+    """Says so if poses (x [m], y [m], theta [rad]) of a link that must be fixed differ from the first; else empty."""
+    changes = np.abs(between(first, np.atleast_2d(others))).max(axis=0)
+    moved, turned = changes[:2].max(), changes[2]
+    if moved <= _FIXED[0] and turned <= _FIXED[1]:
+        return ""
+    return (
+        f"the transform {parent} -> {child} between the robot's base and its laser varies by {moved:.2f} m and "
+        f"{math.degrees(turned):.1f} degrees; the laser must be fixed on the base"
+    )
 
 
 def unit_quaternion(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float] | None:

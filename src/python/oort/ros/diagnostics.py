@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How mapping goes, as a message for diagnostics: what is wrong, what to do about it, and the figures."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import genpy
@@ -32,6 +32,8 @@ class Health:
     scans_processed: int
     drops: Mapping[str, int]
     """scans that were not mapped though they should have been, by reason"""
+    drops_of_late: Sequence[str]
+    """the reasons of the last seconds"""
     ms_per_scan: Spread | None
     """to map one; None if none was"""
     delay_ms: Spread | None
@@ -95,6 +97,8 @@ def _problems(health: Health) -> Iterator[tuple[int, str]]:
         yield warn, f"No scan on {health.scan_topic} for {silence}; check that the laser is running"
     if health.waiting_scans and health.seconds_waiting > _PATIENCE:
         yield warn, f"{health.waiting_scans} scans wait: {health.waiting_for}; check who publishes this transform"
+    if health.drops_of_late:
+        yield warn, f"Scans are left out ({', '.join(health.drops_of_late)}); check the laser, odometry and clocks"
     if health.tracking == "lost":
         yield warn, "Tracking is lost, mapping goes on by odometry alone; drive slowly to a place with more in view"
     if health.queue_size > _BEHIND:

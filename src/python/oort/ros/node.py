@@ -4,6 +4,7 @@
 
 import threading
 import time
+import traceback
 from collections.abc import Callable
 
 import rospy
@@ -31,7 +32,7 @@ from oort.ros.transforms import Transforms, frame
 _TF_PERIOD = 0.05  # [s]
 _QUEUE_PERIOD = 0.1  # [s]
 _HEALTH_PERIOD = 1.0  # [s]
-_COMPLAIN = 10.0  # [s] between two warnings about scans that wait
+_COMPLAIN = 10.0  # [s] between two warnings about the same
 
 
 class Node(Listener):
@@ -41,14 +42,12 @@ class Node(Listener):
         """Advertises, subscribes, and offers the services; mapping begins with map/start."""
         self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
         self._sensor_frame = frame(parameters, "sensor")
-        self._mounted = False
-        self._drawing: Drawing | None = None
+        self._laser = ""  # the frame of the laser whose scans are mapped, once it is known
         self._last_tf = rospy.Time()
         self._tf_lock = threading.Lock()
 
         self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         self._map_cleaned = rospy.Publisher("map_cleaned", OccupancyGrid, queue_size=1, latch=True)
-        self._graph = rospy.Publisher("~graph", MarkerArray, self._graph_wanted(), queue_size=1)
         self._queue_size = rospy.Publisher("~queue_size", Int64, queue_size=10)
         self._file_changed = rospy.Publisher("~file_changed", String, queue_size=10)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
@@ -58,6 +57,7 @@ class Node(Listener):
         self.live = LiveSession(
             parameters, self, clock=rospy.get_time, localiser=self._sensor_on_map, event_log=event_log
         )
+        self._graph = rospy.Publisher("~graph", MarkerArray, self._graph_wanted(), queue_size=1)
         self._services = Services(self.live, self._map_frame)
         self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
         self._scans = rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
@@ -80,7 +80,7 @@ class Node(Listener):
 
     def _resolve(self, message: LaserScan, arrived: float) -> Resolve:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
-        if sensor_frame != self._sensor_frame:
+        if sensor_frame != self._sensor_frame and not self._laser:
             rospy.logwarn_once(
                 "the scans are in frame %s, not in the sensor_frame %s of the parameters; using %s",
                 sensor_frame,
@@ -93,13 +93,15 @@ class Node(Listener):
         def resolve() -> Scan | None:
             if not message.ranges:
                 raise UnusableScanError("without readings")
+            if self._laser and sensor_frame != self._laser:
+                raise UnusableScanError("in another laser's frame")
             mount = self._transforms.mount(sensor_frame)
             odometry = None if mount is None else self._transforms.odometry(stamp, arrived)
             if mount is None or odometry is None:
                 return None
-            if not self._mounted:
+            if not self._laser:
                 self.live.mount_sensor(mount.sensor_on_base)
-                self._mounted = True
+                self._laser = self._sensor_frame = sensor_frame
             return to_scan(message, odometry, mount.upside_down)
 
         return resolve
@@ -116,20 +118,30 @@ class Node(Listener):
         """A scan was mapped: the new map -> odom goes out at once."""
         self._tell_pose()
 
+    def call_made(self, snapshot: Snapshot) -> None:
+        """A call took effect: when its caller hears of it, no pose of before is still on its way out."""
+        self._tell_pose()
+
+    def places_changed(self, snapshot: Snapshot) -> None:
+        """Places came, went or moved, and nothing else of the map changed."""
+        self._tell_graph()
+
     def drawn(self, drawing: Drawing) -> None:
-        """The map was drawn."""
+        """The map was drawn, or is to be shown again."""
         if drawing.grid.cells.size == 0:
             return
         stamp = rospy.Time.now()
-        self._drawing = drawing
         self._map.publish(grid_message(drawing.grid, self._map_frame, stamp))
         self._map_cleaned.publish(grid_message(drawing.cleaned, self._map_frame, stamp))
-        if self._graph.get_num_connections() > 0:
-            self._graph.publish(self._markers(drawing))
+        self._tell_graph()
 
     def saved(self, what: Saved) -> None:
         """Files were written."""
         self._file_changed.publish(NAMES[what])
+
+    def note(self, text: str) -> None:
+        """Something that its owner should know."""
+        rospy.loginfo("%s", text)
 
     def trouble(self, text: str) -> None:
         """Something went wrong that no caller waits to hear of."""
@@ -139,13 +151,11 @@ class Node(Listener):
 
     def _tell_pose(self) -> None:
         """map -> odom, dated one period ahead, so that a look-up for now finds it until the next one."""
-        pose = self.live.snapshot.odom_pose
-        if pose is None:
-            return
-        stamp = rospy.Time.now() + rospy.Duration(_TF_PERIOD)
         with self._tf_lock:
-            if stamp == self._last_tf:
-                return  # the clock stands: listeners complain of repeated data
+            pose = self.live.snapshot.odom_pose
+            stamp = rospy.Time.now() + rospy.Duration(_TF_PERIOD)
+            if pose is None or stamp == self._last_tf:
+                return  # where the clock stands, listeners complain of repeated data
             self._last_tf = stamp
             self._broadcaster.sendTransform(transform(self._map_frame, self._odom_frame, stamp, pose))
 
@@ -171,12 +181,17 @@ class Node(Listener):
     def _on_graph_subscriber(
         self, _name: str, publish_to_peer: Callable[[MarkerArray], None], _publish: Callable[[MarkerArray], None]
     ) -> None:
-        if self._drawing is not None:
-            publish_to_peer(self._markers(self._drawing))
+        self._show_graph(publish_to_peer)
 
-    def _markers(self, drawing: Drawing) -> MarkerArray:
-        places = [(space, id, pose) for (space, id), pose in drawing.places.items()]
-        return graph_markers(drawing.map, places, self._map_frame, rospy.Time.now())
+    def _tell_graph(self) -> None:
+        if self._graph.get_num_connections() > 0:
+            self._show_graph(self._graph.publish)
+
+    def _show_graph(self, publish: Callable[[MarkerArray], None]) -> None:
+        drawing = self.live.gallery.drawing
+        if drawing is not None:
+            places = [(space, id, pose) for (space, id), pose in self.live.snapshot.places.items()]
+            publish(graph_markers(drawing.map, places, self._map_frame, rospy.Time.now()))
 
 
 def _repeat(period: float, work: Callable[[], None]) -> None:
@@ -185,6 +200,7 @@ def _repeat(period: float, work: Callable[[], None]) -> None:
         started = time.monotonic()
         try:
             work()
-        except rospy.ROSException:
-            return  # the topic was closed: the node is being shut down
+        except Exception:
+            if not rospy.is_shutdown():  # then the topics are closed
+                rospy.logerr_throttle(_COMPLAIN, traceback.format_exc())
         time.sleep(max(0.0, period - (time.monotonic() - started)))

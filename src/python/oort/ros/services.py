@@ -21,8 +21,6 @@ class Services:
         """Offers the services."""
         self._live = live
         self._map_frame = map_frame
-        for name in ("notify_docked", "pause", "resume_from_paused", "stop", "clear"):
-            self._offer(f"map/{name}", Empty, self._empty_call(f"map/{name}"))
         self._offer("map/republish_maps", Empty, self._republish)
         self._offer("map/start", srv.SetString, self._start)
         self._offer("map/load", srv.SetString, self._load)
@@ -34,20 +32,24 @@ class Services:
         self._offer("map/map", srv.GetMap, self._map)
         self._offer("graph_loc/create", srv.LocCreate, self._create)
         self._offer("graph_loc/create_points", srv.LocCreatePoints, self._create_points)
-        self._offer("graph_loc/is_ready", srv.GetBool, lambda _: srv.GetBoolResponse(live.is_ready))
+        self._offer("graph_loc/is_ready", srv.GetBool, lambda _: srv.GetBoolResponse(live.places.is_ready))
         self._offer("graph_loc/list", srv.LocNamespace, self._list)
         self._offer("graph_loc/list_namespaces", srv.GetStrings, self._list_namespaces)
         self._offer("graph_loc/delete", srv.LocDelete, self._delete)
         self._offer("graph_loc/locate", srv.LocLocate, self._locate)
         self._offer("graph_loc/clear", srv.LocNamespace, self._clear)
+        # map/stop comes last: who waits for it finds all the others.
+        for name in ("notify_docked", "pause", "resume_from_paused", "clear", "stop"):
+            self._offer(f"map/{name}", Empty, self._empty_call(f"map/{name}"))
 
     def _offer(self, name: str, kind: Any, handle: Callable[[Any], Any]) -> None:
         def answer(request: Any) -> Any:
             try:
                 return handle(request)
             except OortError as error:
-                rospy.logwarn("%s", error)
-                raise rospy.ServiceException(str(error)) from error
+                text = str(error) if str(error).startswith(name) else f"{name}: {error}"
+                rospy.logwarn("%s", text)
+                raise rospy.ServiceException(text) from error
 
         rospy.Service(f"~{name}", kind, answer)
 
@@ -76,10 +78,11 @@ class Services:
         return srv.MapResumeResponse()
 
     def _map(self, _: srv.GetMapRequest) -> FastMapResponse:
-        return map_reply(grid_message(self._live.latest_map().grid, self._map_frame, rospy.Time.now()))
+        drawing = self._live.gallery.latest(self._live.snapshot.revision)
+        return map_reply(grid_message(drawing.grid, self._map_frame, rospy.Time.now()))
 
     def _create(self, request: srv.LocCreateRequest) -> srv.LocCreateResponse:
-        self._live.create_location(request.nspace, request.id)
+        self._live.places.create(request.nspace, request.id)
         return srv.LocCreateResponse()
 
     def _create_points(self, request: srv.LocCreatePointsRequest) -> srv.LocCreatePointsResponse:
@@ -103,7 +106,7 @@ class Services:
         return srv.LocDeleteResponse(self._live.call("graph_loc/delete", [request.nspace, request.id]))
 
     def _locate(self, request: srv.LocLocateRequest) -> srv.LocLocateResponse:
-        pose = self._live.locate(request.nspace, request.id)
+        pose = self._live.places.locate(request.nspace, request.id)
         return srv.LocLocateResponse(pose_stamped(pose, self._map_frame, rospy.Time.now()))
 
     def _clear(self, request: srv.LocNamespaceRequest) -> srv.LocNamespaceResponse:

@@ -7,41 +7,29 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import rospy
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
 
-from oort._core import OdometryBuffer, Parameters
+from oort._core import Parameters
 from oort.errors import InputError
 from oort.live import UnusableScanError
+from oort.live.odometry import Odometry
 from oort.poses import compose
 from oort.recording import Pose
-from oort.recording.frames import FrameTree, heading, to_plane, unit_quaternion
+from oort.recording.frames import FrameTree, describe_variation, heading, to_plane, unit_quaternion
 from oort.recording.laser_scan import seconds
 from oort.ros.messages import yaw
 
-_KEPT = 20.0  # [s] of odometry; scans that come later than that are lost
-_BACKWARDS = 1.0  # [s]; a transform that is older than the last one by more says that the clock was set back
 _FRESH = 1.0  # [s]; an older pose of a localiser is not where the robot is
+_SILENCE = 2.0  # [s] of the wall's clock without a word from the localiser, for ROS time may stand still
 
 
 def frame(parameters: Parameters, name: str) -> str:
     """The frame of the base, odom, sensor or map, without the slash that old tf wrote."""
     return str(parameters.get(f"{name}_frame")).lstrip("/")
-
-
-@dataclass(slots=True)
-class _Odometry:
-    """The transforms from the odometry frame to one child."""
-
-    buffer: OdometryBuffer
-    oldest: float
-    newest: float
-    arrived: float
-    """[s] time.monotonic() of the newest"""
-    set_back_at: float = -math.inf
-    """[s] time.monotonic()"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +50,10 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         self._on_odometry = on_odometry
         self._lock = threading.Lock()  # /tf and /tf_static have threads of their own
         self._tree = FrameTree()  # the first transform of each link
-        self._odometry: dict[str, _Odometry] = {}
+        self._odometry: dict[str, Odometry] = {}  # by the child of the odometry frame
         self._mounts: dict[str, Mount] = {}
+        self._fixed: set[tuple[str, str]] = set()  # (child, parent) of the links that mounts rest on
+        self._localised: dict[str, float] = {}  # [s] time.monotonic() of the last word, by the child of the map frame
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
         """Takes a transform from tf."""
@@ -87,9 +77,11 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
             return known
         with self._lock:
             try:
-                matrix = self._tree.mount(self._base, sensor_frame)
+                ways = self._tree.ways(self._base, sensor_frame)
             except InputError:
                 return None
+            self._fixed.update(link for way in ways for link in pairwise(way))
+            matrix = self._tree.mount(self._base, sensor_frame)
         try:
             mount = Mount(*to_plane(matrix, sensor_frame))
         except InputError as error:
@@ -105,35 +97,32 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         with self._lock:
             way = self._tree.way_up(self._base, self._odom)
             odometry = self._odometry.get(way[-2]) if len(way) > 1 else None
-            if odometry is None:
-                return None
-            pose = odometry.buffer.lookup(stamp)
-            if pose is None:
-                if stamp < odometry.oldest and arrived < odometry.arrived:  # else the clock may have been set back
-                    raise UnusableScanError("older than the odometry")
-                if arrived < odometry.set_back_at and stamp > odometry.newest + _BACKWARDS:
-                    raise UnusableScanError("from before the clock was set back")
-                return None
-            if len(way) == 2:
+            pose = None if odometry is None else odometry.at(stamp, arrived)
+            if pose is None or len(way) == 2:
                 return pose
             x, y, theta = compose(pose, to_plane(self._tree.mount(way[-2], self._base), self._base)[0]).tolist()
             return x, y, theta
 
     def missing(self, sensor_frame: str) -> str:
         """Says what scans wait for, such as "no odom -> base_footprint since 2.3 s"."""
+        name = f"{self._odom} -> {self._base}"
         with self._lock:
             if not self._tree.way_up(sensor_frame, self._base) and sensor_frame != self._base:
                 return f"no {self._base} -> {sensor_frame} (tf has {self._tree.describe()})"
             way = self._tree.way_up(self._base, self._odom)
             if len(way) < 2:
-                return f"no {self._odom} -> {self._base} (tf has {self._tree.describe()})"
-            silence = time.monotonic() - self._odometry[way[-2]].arrived
-        return f"no {self._odom} -> {self._base} since {silence:.1f} s"
+                return f"no {name} (tf has {self._tree.describe()})"
+            odometry = self._odometry.get(way[-2])
+            return f"{name} is static: no odometry" if odometry is None else odometry.lack(name)
 
     # ---- a localiser ----
 
     def sensor_on_map(self, sensor_frame: str) -> Pose | None:
         """T_map_sensor as other programs tell it, if that is of now."""
+        with self._lock:
+            way = self._tree.way_up(sensor_frame, self._map)
+            if len(way) > 1 and time.monotonic() > self._localised[way[-2]] + _SILENCE:
+                return None
         try:
             transform = self.lookup_transform(self._map, sensor_frame, rospy.Time(0))
         except tf2_ros.TransformException:
@@ -154,23 +143,24 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         if rotation is None or not all(map(math.isfinite, (t.x, t.y, t.z))):
             return False
         stamp = seconds(transform.header.stamp.secs, transform.header.stamp.nsecs)
+        pose = t.x, t.y, heading(*rotation)
         with self._lock:
             if parent not in self._tree.links.get(child, {}):
                 self._tree.add(parent, child, stamp, (t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
+            if (child, parent) in self._fixed:
+                self._compare(parent, child, pose)
+            if parent == self._map:
+                self._localised[child] = time.monotonic() if moving else math.inf
             if parent != self._odom or not moving:
                 return False
-            self._add_odometry(child, stamp, (t.x, t.y, heading(*rotation)))
+            if self._odometry.setdefault(child, Odometry()).add(stamp, pose):
+                self.clear()  # tf2 would refuse what is older
         return True
 
-    def _add_odometry(self, child: str, stamp: float, pose: Pose) -> None:
-        now = time.monotonic()
-        odometry = self._odometry.get(child)
-        if odometry is None or stamp < odometry.newest - _BACKWARDS:
-            set_back_at = -math.inf if odometry is None else now
-            if odometry is not None:
-                self.clear()  # tf2 would refuse what is older
-            odometry = self._odometry[child] = _Odometry(OdometryBuffer(_KEPT), stamp, stamp, now, set_back_at)
-        odometry.buffer.add(stamp, *pose)
-        odometry.newest = max(odometry.newest, stamp)
-        odometry.oldest = max(odometry.oldest, odometry.newest - _KEPT)
-        odometry.arrived = now
+    def _compare(self, parent: str, child: str, pose: Pose) -> None:
+        """Complains, once, of a link that carries the laser and moves."""
+        first = self._tree.links[child][parent].by_time()[0, 1:]
+        variation = describe_variation(parent, child, first, pose)
+        if variation:
+            rospy.logwarn("%s; mapping goes on as if it had not moved", variation)
+            self._fixed.remove((child, parent))

@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The figures of a live session: what came, what became of it, and how long that took."""
+
+import enum
+import time
+from collections import Counter
+
+from oort._core import ScanResult
+from oort.live.window import Rate, Window
+from oort.session import State
+
+_TRACKED = ("ok", "degenerate")  # what the scan matcher says of a scan that it could place
+_LOST = 20  # scans in a row that it could not place: two seconds
+_QUIET = 10.0  # [s] between two words on one reason
+_OF_LATE = 5.0  # [s]
+_NEVER = float("-inf")
+
+
+class Tracking(enum.Enum):
+    """How well the robot's place is known."""
+
+    IDLE = "idle"
+    """nothing is being mapped"""
+    TRACKING = "tracking"
+    UNCERTAIN = "uncertain"
+    """the last scans did not fit what was seen before; odometry tells where they were"""
+    LOST = "lost"
+    """it has been so for long"""
+
+
+class Drops:
+    """Scans that were not mapped though they should have been, by reason."""
+
+    def __init__(self) -> None:
+        """None so far."""
+        self.counts: Counter[str] = Counter()
+        self._last: dict[str, float] = {}
+        self._told: dict[str, tuple[float, int]] = {}  # when, and how many there were then
+
+    def add(self, reason: str, why: str) -> str:
+        """Counts a scan; ``why`` is its reason in full. What to tell of it: nothing shortly after the last word."""
+        now = time.monotonic()
+        self.counts[reason] += 1
+        self._last[reason] = now
+        told_at, told = self._told.get(reason, (_NEVER, 0))
+        if now < told_at + _QUIET:
+            return ""
+        self._told[reason] = now, self.counts[reason]
+        scans = self.counts[reason] - told
+        return f"{scans} scans were left out: {why}" if scans > 1 else f"a scan was left out: {why}"
+
+    def of_late(self) -> list[str]:
+        """The reasons of the last seconds."""
+        now = time.monotonic()
+        return sorted(reason for reason, last in list(self._last.items()) if now < last + _OF_LATE)
+
+
+class Figures:
+    """What diagnostics tell. Written by the threads that bring scans and map them; anyone reads."""
+
+    def __init__(self) -> None:
+        """Nothing came so far."""
+        self.scans_arrived = 0
+        self.scans_mapped = 0
+        self.drops = Drops()
+        self.clock_jumps = 0
+        """how often the scans' clock was set back"""
+        self.milliseconds = Window()
+        """to map a scan"""
+        self.delays = Window()
+        """[ms] from a scan's arrival until it is mapped and told"""
+        self.last_result: ScanResult | None = None
+        self._misses = 0  # scans in a row that did not fit what was seen before
+        self._arrivals = Rate()
+        self._last_arrival = _NEVER
+
+    def arrived(self) -> None:
+        """A scan came."""
+        self.scans_arrived += 1
+        self._last_arrival = time.monotonic()
+        self._arrivals.add(self._last_arrival)
+
+    def mapped(self, result: ScanResult | None, seconds: float) -> None:
+        """A scan was mapped, which took so long [s]."""
+        self.scans_mapped += 1
+        self.milliseconds.add(1e3 * seconds)
+        self.last_result = result
+        if result is not None and result.status:
+            self._misses = 0 if result.status in _TRACKED else self._misses + 1
+
+    def forget(self) -> None:
+        """The map that the last scans were mapped into is gone."""
+        self.last_result = None
+        self._misses = 0
+
+    @property
+    def scan_rate(self) -> float:
+        """How often scans came of late [1/s]."""
+        return self._arrivals.hertz(time.monotonic())
+
+    @property
+    def seconds_without_scan(self) -> float:
+        """Since the last scan arrived [s]; inf if none did."""
+        return time.monotonic() - self._last_arrival
+
+    def tracking(self, state: State) -> Tracking:
+        """How well the robot's place is known."""
+        if state is not State.MAPPING or self.last_result is None:
+            return Tracking.IDLE
+        if self._misses == 0:
+            return Tracking.TRACKING
+        return Tracking.UNCERTAIN if self._misses < _LOST else Tracking.LOST
