@@ -35,7 +35,9 @@ void expect_near(const Pose2& a, const Pose2& b, double tolerance) {
   EXPECT_NEAR(wrap_angle(a.theta - b.theta), 0.0, tolerance);
 }
 
-Eigen::Vector3d vector_of(const Pose2& pose) { return {pose.x, pose.y, pose.theta}; }
+Eigen::Vector3d vector_of(const Pose2& pose) {
+  return {pose.x, pose.y, pose.theta};
+}
 
 TEST(WrapAngle, StaysInTheHalfOpenInterval) {
   EXPECT_EQ(wrap_angle(M_PI), -M_PI);
@@ -104,7 +106,9 @@ TEST(Covariance, CompoundAndInverseFollowTheNumericJacobians) {
   }
 }
 
-LaserScan scan_of(std::vector<float> ranges) { return {12.5, -M_PI / 2, M_PI / 2, 0.1, 3.0, std::move(ranges)}; }
+LaserScan scan_of(std::vector<float> ranges) {
+  return {12.5, -M_PI / 2, M_PI / 2, 0.1, 3.0, std::move(ranges)};
+}
 
 TEST(PointCloud, KeepsWhatTheSchemaSays) {
   const PointCloud cloud = to_point_cloud(scan_of({1.0F, 3.0F, 0.05F, kInf, static_cast<float>(kNan), -kInf}));

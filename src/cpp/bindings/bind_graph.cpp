@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -35,7 +37,8 @@ void require_shape(const py::array& array, const std::vector<py::ssize_t>& shape
 
 /// The edge at position k of the arrays gets the id k.
 Graph graph_of(const Array<double>& node_poses, const Array<std::int64_t>& i, const Array<std::int64_t>& j,
-               const Array<double>& measurements, const Array<double>& covariances, const Array<bool>& switchable) {
+               const Array<double>& measurements, const Array<double>& covariances, const Array<bool>& switchable,
+               const std::optional<Array<double>>& switches) {
   const py::ssize_t nodes = node_poses.ndim() > 0 ? node_poses.shape(0) : 0;
   const py::ssize_t edges = i.ndim() > 0 ? i.shape(0) : 0;
   require_shape(node_poses, {nodes, 3}, "node_poses");
@@ -44,6 +47,7 @@ Graph graph_of(const Array<double>& node_poses, const Array<std::int64_t>& i, co
   require_shape(measurements, {edges, 3}, "measurements");
   require_shape(covariances, {edges, 3, 3}, "covariances");
   require_shape(switchable, {edges}, "switchable");
+  if (switches) require_shape(*switches, {edges}, "switches");
 
   Graph graph;
   const auto pose = node_poses.unchecked<2>();
@@ -59,7 +63,7 @@ Graph graph_of(const Array<double>& node_poses, const Array<std::int64_t>& i, co
     constraint.T_i_j = {z(k, 0), z(k, 1), z(k, 2)};
     constraint.covariance = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(covariances.data(k, 0, 0));
     if (switchable.at(k)) {
-      graph.switchable_edges.push_back({id, from, to, constraint, 1.0});
+      graph.switchable_edges.push_back({id, from, to, constraint, switches ? switches->at(k) : 1.0});
     } else {
       graph.edges.push_back({id, from, to, constraint});
     }
@@ -91,8 +95,8 @@ py::array_t<double> switches_of(const Graph& graph) {
 std::tuple<py::array_t<double>, py::array_t<double>, OptimizerSummary> optimize_graph(
     const Array<double>& node_poses, const Array<std::int64_t>& i, const Array<std::int64_t>& j,
     const Array<double>& measurements, const Array<double>& covariances, const Array<bool>& switchable,
-    const OptimizerOptions& options) {
-  Graph graph = graph_of(node_poses, i, j, measurements, covariances, switchable);
+    const OptimizerOptions& options, const std::optional<Array<double>>& switches) {
+  Graph graph = graph_of(node_poses, i, j, measurements, covariances, switchable, switches);
   OptimizerSummary summary;
   {
     const py::gil_scoped_release release;
@@ -106,21 +110,34 @@ void bind_options(py::module_& m) {
       .value("CORRECT", Whitening::kCorrect, "L^T e")
       .value("ORIGINAL", Whitening::kOriginal, "L e, as Mayfield's Oort did");
   py::class_<OptimizerOptions>(m, "OptimizerOptions", "How the pose graph is solved.")
-      .def(py::init([](double scale, Whitening whitening, int max_iterations) {
-             return OptimizerOptions{scale, whitening, max_iterations};
+      .def(py::init([](double scale, Whitening whitening, int max_iterations, bool decide, std::uint64_t first_free) {
+             return OptimizerOptions{scale, whitening, max_iterations, decide, first_free};
            }),
            py::kw_only(), py::arg("switchable_constraint_scale") = OptimizerOptions{}.switchable_constraint_scale,
            py::arg("whitening") = OptimizerOptions{}.whitening,
-           py::arg("max_iterations") = OptimizerOptions{}.max_iterations)
+           py::arg("max_iterations") = OptimizerOptions{}.max_iterations, py::arg("decide") = OptimizerOptions{}.decide,
+           py::arg("first_free_node") = OptimizerOptions{}.first_free_node)
       .def_readwrite("switchable_constraint_scale", &OptimizerOptions::switchable_constraint_scale,
                      "The squared Mahalanobis distance at which a link is half switched off.")
       .def_readwrite("whitening", &OptimizerOptions::whitening)
-      .def_readwrite("max_iterations", &OptimizerOptions::max_iterations);
+      .def_readwrite("max_iterations", &OptimizerOptions::max_iterations)
+      .def_readwrite("decide", &OptimizerOptions::decide,
+                     "Whether links that disagree with the optimum of the switches (at 95 %) are then left out.")
+      .def_readwrite("first_free_node", &OptimizerOptions::first_free_node, "Nodes before this one keep their poses.");
   py::class_<OptimizerSummary>(m, "OptimizerSummary", "How solving the pose graph went.")
       .def_readonly("converged", &OptimizerSummary::converged)
       .def_readonly("iterations", &OptimizerSummary::iterations)
-      .def_readonly("initial_cost", &OptimizerSummary::initial_cost, "Half the sum of squared residuals.")
+      .def_readonly("initial_cost", &OptimizerSummary::initial_cost,
+                    "Half the sum of chi^2 over the edges and of scale chi^2 / (scale + chi^2) over the switchable "
+                    "ones, chi^2 being the squared Mahalanobis distance.")
       .def_readonly("final_cost", &OptimizerSummary::final_cost)
+      .def_property_readonly(
+          "chi_squared",
+          [](const OptimizerSummary& summary) {
+            return py::array_t<double>(static_cast<py::ssize_t>(summary.chi_squared.size()),
+                                       summary.chi_squared.data());
+          },
+          "(S,) of each switchable edge, in their order, at the final poses.")
       .def_readonly("message", &OptimizerSummary::message, "Why the solver stopped.");
 }
 
@@ -128,12 +145,15 @@ void bind_options(py::module_& m) {
 
 void bind_graph(py::module_& m) {
   bind_options(m);
-  m.def("optimize_graph", &optimize_graph, py::arg("node_poses"), py::arg("i"), py::arg("j"), py::arg("measurements"),
-        py::arg("covariances"), py::arg("switchable"), py::arg("options") = OptimizerOptions{},
-        "Solves a pose graph given as arrays: node_poses (N, 3: x, y [m], theta [rad]) to start from; for each of M "
-        "edges the nodes i and j (M,), the measured T_i_j (M, 3), its covariance (M, 3, 3; along the axes of node i) "
-        "and whether it may be switched off (M,). The first node of each connected part keeps its pose. Returns "
-        "(poses (N, 3), switches (M,) in [0, 1], summary). Raises InputError and ParameterError.");
+  m.def(
+      "optimize_graph", &optimize_graph, py::arg("node_poses"), py::arg("i"), py::arg("j"), py::arg("measurements"),
+      py::arg("covariances"), py::arg("switchable"), py::arg("options") = OptimizerOptions{},
+      py::arg("switches") = py::none(),
+      "Solves a pose graph given as arrays: node_poses (N, 3: x, y [m], theta [rad]) to start from; for each of M "
+      "edges the nodes i and j (M,), the measured T_i_j (M, 3), its covariance (M, 3, 3; along the axes of node i) "
+      "and whether it may be switched off (M,). `switches` (M,) are those of an earlier solution; without them all are "
+      "new. The first node of each connected part keeps its pose. Returns "
+      "(poses (N, 3), switches (M,) in [0, 1], summary). Raises InputError and ParameterError.");
   m.def(
       "optimize_map", [](Map& map, const OptimizerOptions& options) { return optimize(map.graph, options); },
       py::arg("map"), py::arg("options") = OptimizerOptions{}, py::call_guard<py::gil_scoped_release>(),

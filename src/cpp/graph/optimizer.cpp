@@ -2,40 +2,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/graph/optimizer.hpp"
 
-#include <ceres/problem.h>
-#include <ceres/solver.h>
-
+#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/graph/graph_check.hpp"
+#include "oort/graph/graph_solver.hpp"
 #include "oort/graph/residuals.hpp"
 
 namespace oort {
 namespace {
 
-// A weak initial damping: graphs start near their optimum, where Gauss-Newton steps are right. Ceres's own 1e4 takes
-// twice the iterations (Manhattan 3500); from 1e8 on, false closures make the first steps fail.
-constexpr double kInitialTrustRegionRadius = 1e6;
-
 // Squared errors beyond this overflow once products of them are summed.
 constexpr double kLargestSquaredError = 1e100;
 
-/// What Ceres varies, in the order of the graph's nodes and switchable edges.
-struct Variables {
-  std::vector<std::array<double, 3>> poses;
-  std::vector<double> switches;
-};
+// A link agrees with a solution if its squared error is at most this: 95 % of a chi-square of 3 degrees of freedom.
+constexpr double kAgreement = 7.815;
 
-template <typename AnyEdge>
-std::string describe(const AnyEdge& edge) {
-  return "edge " + std::to_string(edge.id) + " (node " + std::to_string(edge.i) + " to " + std::to_string(edge.j) + ")";
-}
+// While the solution is searched for, a link whose best switch is below this is left out: it hardly pulls, and false
+// links, which join distant nodes, make each step dear.
+constexpr double kOff = 0.01;
+
+// How many steps are made with all links, the false ones included; then with those not off, before and between looking
+// again which those are.
+constexpr int kStepsWithAll = 2;
+constexpr int kSearchRounds = 3;
+constexpr int kSearchSteps = 3;
+
+// From this round of deciding on, links only leave, so that deciding ends.
+constexpr int kRoundsBothWays = 10;
+
+// Solving ends with a step that lowers the cost by less: it moves nothing by as much as a thousandth of its standard
+// deviation, or, while the solution is searched for, a fifth.
+constexpr double kTolerance = 1e-7;
+constexpr double kSearchTolerance = 1e-2;
+
+// Poses at which the links that are always believed cost less are those of the chain.
+constexpr double kChained = 1e-3;
 
 void check_options(const OptimizerOptions& options) {
   if (!std::isfinite(options.switchable_constraint_scale) || options.switchable_constraint_scale <= 0.0) {
@@ -47,133 +55,201 @@ void check_options(const OptimizerOptions& options) {
   }
 }
 
-void check_nodes(const std::vector<Node>& nodes) {
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    if (nodes[k].id != k) {
-      throw InputError("node ids must count up from 0: found node " + std::to_string(nodes[k].id) + " at position " +
-                       std::to_string(k));
-    }
-    if (!is_finite(nodes[k].pose)) throw InputError("the pose of node " + std::to_string(k) + " is not finite");
-  }
-}
-
+/// The edge as a link. InputError, naming the edge, if its covariance has no inverse or its error is too large to
+/// compute with.
 template <typename AnyEdge>
-void check_edge(const AnyEdge& edge, std::size_t node_count) {
-  for (const std::uint64_t end : {edge.i, edge.j}) {
-    if (end >= node_count) {
-      throw InputError(describe(edge) + " names a node that is not in the graph, which has " +
-                       std::to_string(node_count) + " nodes");
-    }
-  }
-  if (edge.i == edge.j) throw InputError(describe(edge) + " links a node to itself");
-  if (!is_finite(edge.constraint.T_i_j)) throw InputError("the measurement of " + describe(edge) + " is not finite");
-}
-
-void check_graph(const Graph& graph) {
-  check_nodes(graph.nodes);
-  for (const Edge& edge : graph.edges) check_edge(edge, graph.nodes.size());
-  for (const SwitchableEdge& edge : graph.switchable_edges) {
-    check_edge(edge, graph.nodes.size());
-    if (!(edge.switch_value >= 0.0 && edge.switch_value <= 1.0)) {
-      throw InputError("the switch of " + describe(edge) + " is " + std::to_string(edge.switch_value) +
-                       ", outside 0 to 1");
-    }
-  }
-}
-
-/// One flag per node: true for the first node of each connected part. Without it the part could float freely.
-std::vector<bool> find_anchors(const Graph& graph) {
-  std::vector<std::size_t> parent(graph.nodes.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&parent](std::size_t k) {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  };
-  const auto join = [&parent, &root](std::size_t i, std::size_t j) {
-    const auto [first, second] = std::minmax({root(i), root(j)});
-    parent[second] = first;  // the root of a part is its first node
-  };
-  for (const Edge& edge : graph.edges) join(edge.i, edge.j);
-  for (const SwitchableEdge& edge : graph.switchable_edges) join(edge.i, edge.j);
-
-  std::vector<bool> anchors(graph.nodes.size());
-  for (std::size_t k = 0; k < anchors.size(); ++k) anchors[k] = root(k) == k;
-  return anchors;
-}
-
-Variables read_variables(const Graph& graph) {
-  Variables variables;
-  variables.poses.reserve(graph.nodes.size());
-  for (const Node& node : graph.nodes) variables.poses.push_back({node.pose.x, node.pose.y, node.pose.theta});
-  variables.switches.reserve(graph.switchable_edges.size());
-  for (const SwitchableEdge& edge : graph.switchable_edges) variables.switches.push_back(edge.switch_value);
-  return variables;
-}
-
-/// The edge's whitening matrix. InputError, naming the edge, if it has none or if its error is too large to compute
-/// with: Ceres would then fail after writing to the log of the process.
-template <typename AnyEdge>
-Eigen::Matrix3d edge_whitening(const AnyEdge& edge, const std::vector<Node>& nodes, Whitening whitening) {
-  Eigen::Matrix3d W;
+Link link_of(const AnyEdge& edge, const std::vector<Node>& nodes, Whitening whitening) {
+  Link link;
+  link.i = edge.i;
+  link.j = edge.j;
+  link.T_i_j = edge.constraint.T_i_j;
   try {
-    W = whitening_matrix(edge.constraint.covariance, whitening);
+    link.W = whitening_matrix(edge.constraint.covariance, whitening);
   } catch (const InputError& error) {
     throw InputError(describe(edge) + ": " + error.what());
   }
-  const Eigen::Vector3d error = constraint_error(nodes[edge.i].pose, nodes[edge.j].pose, edge.constraint.T_i_j);
-  if (!((W * error).squaredNorm() < kLargestSquaredError)) {
+  const Eigen::Vector3d error = constraint_error(nodes[edge.i].pose, nodes[edge.j].pose, link.T_i_j);
+  if (!((link.W * error).squaredNorm() < kLargestSquaredError)) {
     throw InputError(describe(edge) + ": poses and measurement differ by far more standard deviations than can be" +
                      " squared; check their units");
   }
-  return W;
+  return link;
 }
 
-/// Adds everything in the order of the graph: Ceres's own ordering, and with it the last bits, follow from it.
-void build_problem(const Graph& graph, const OptimizerOptions& options, Variables& variables, ceres::Problem& problem) {
+/// The edges, then the switchable edges.
+std::vector<Link> links_of(const Graph& graph, Whitening whitening) {
+  std::vector<Link> links;
+  links.reserve(graph.edges.size() + graph.switchable_edges.size());
+  for (const Edge& edge : graph.edges) links.push_back(link_of(edge, graph.nodes, whitening));
+  for (const SwitchableEdge& edge : graph.switchable_edges) {
+    links.push_back(link_of(edge, graph.nodes, whitening));
+    links.back().switchable = true;
+    links.back().s = edge.switch_value;
+  }
+  return links;
+}
+
+std::vector<int> variables_of(const Graph& graph, std::uint64_t first_free_node) {
   const std::vector<bool> anchors = find_anchors(graph);
-  for (std::size_t k = 0; k < variables.poses.size(); ++k) {
-    problem.AddParameterBlock(variables.poses[k].data(), 3);
-    if (anchors[k]) problem.SetParameterBlockConstant(variables.poses[k].data());
+  std::vector<int> variables(graph.nodes.size(), -1);
+  int count = 0;
+  for (std::size_t k = 0; k < variables.size(); ++k) {
+    if (!anchors[k] && k >= first_free_node) variables[k] = count++;
   }
-  for (const Edge& edge : graph.edges) {
-    const Eigen::Matrix3d W = edge_whitening(edge, graph.nodes, options.whitening);
-    problem.AddResidualBlock(new ChainResidual(edge.constraint.T_i_j, W), nullptr, variables.poses[edge.i].data(),
-                             variables.poses[edge.j].data());
-  }
-  for (std::size_t k = 0; k < graph.switchable_edges.size(); ++k) {
-    const SwitchableEdge& edge = graph.switchable_edges[k];
-    const Eigen::Matrix3d W = edge_whitening(edge, graph.nodes, options.whitening);
-    double* const s = &variables.switches[k];
-    problem.AddResidualBlock(new SwitchableResidual(edge.constraint.T_i_j, W), nullptr, variables.poses[edge.i].data(),
-                             variables.poses[edge.j].data(), s);
-    problem.AddResidualBlock(new SwitchPrior(options.switchable_constraint_scale), nullptr, s);
-  }
+  return variables;
 }
 
-ceres::Solver::Options solver_options(const OptimizerOptions& options) {
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // Not SuiteSparse: it may use several threads and whatever BLAS is installed, and both may change the last bits. On
-  // the graphs of homes Eigen's factorisation is the faster one too.
-  solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = options.max_iterations;
-  solver.initial_trust_region_radius = kInitialTrustRegionRadius;
-  return solver;
+std::vector<Pose2> poses_of(const Graph& graph) {
+  std::vector<Pose2> poses;
+  for (const Node& node : graph.nodes) poses.push_back(node.pose);
+  return poses;
 }
 
-void write_back(const Variables& variables, Graph& graph) {
-  const std::vector<bool> anchors = find_anchors(graph);
+double cost(const GraphSolver& solver) {
+  double sum = 0.0;
+  for (const Link& link : solver.links()) {
+    const double chi2 = solver.squared_error(link);
+    sum += link.switchable ? chi2 * solver.best_switch(chi2) : chi2;
+  }
+  return 0.5 * sum;
+}
+
+/// The part of the links that are always believed.
+double believed_cost(const GraphSolver& solver) {
+  double sum = 0.0;
+  for (const Link& link : solver.links()) {
+    if (!link.switchable) sum += solver.squared_error(link);
+  }
+  return 0.5 * sum;
+}
+
+/// The poses that follow from the links that are always believed alone: each node where the most certain of its links
+/// to earlier nodes has it.
+std::vector<Pose2> chained_poses(const GraphSolver& solver, const std::vector<int>& variables) {
+  std::vector<Pose2> poses = solver.poses();
+  std::vector<const Link*> best(poses.size(), nullptr);
+  const auto certainty = [](const Link& link) { return std::abs(link.W.determinant()); };
+  for (const Link& link : solver.links()) {
+    const Link*& chosen = best[std::max(link.i, link.j)];
+    if (!link.switchable && (chosen == nullptr || certainty(link) > certainty(*chosen))) chosen = &link;
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (variables[k] < 0 || best[k] == nullptr) continue;
+    const Link& link = *best[k];
+    poses[k] = k == link.j ? poses[link.i] * link.T_i_j : poses[link.j] * inverse(link.T_i_j);
+  }
+  return poses;
+}
+
+/// The way to the solution.
+///
+/// If every link that was on agrees with the poses as they are, all that is left to do is to decide anew which agree.
+/// Else a link surprises, and what was believed may be wrong: all switches start at 1 again, so that links that were
+/// off together can come back together; a solution that costs more than the poses that were there is dropped.
+class Search {
+ public:
+  Search(GraphSolver& solver, const std::vector<int>& variables, const OptimizerOptions& options)
+      : solver_(solver), variables_(variables), options_(options) {}
+
+  void run() {
+    const bool surprised = is_surprised();
+    if (surprised) {
+      for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
+    }
+    if (!options_.decide) {
+      solve_switches(kTolerance, options_.max_iterations, options_.max_iterations);
+      return;
+    }
+    if (surprised) search();
+    const auto agrees = [](const Link& link, double chi2, int round) {
+      return chi2 <= kAgreement && (round < kRoundsBothWays || link.on);
+    };
+    settle(agrees, kTolerance, options_.max_iterations, options_.max_iterations);
+  }
+
+  int iterations() const { return iterations_; }
+  GraphSolver::Progress progress() const { return progress_; }
+
+ private:
+  /// Whether a link that was on disagrees with the poses as they are.
+  bool is_surprised() const {
+    const double agreeing_switch = solver_.best_switch(kAgreement);
+    return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
+      return link.switchable && link.s > agreeing_switch && solver_.squared_error(link) > kAgreement;
+    });
+  }
+
+  /// With all links, then with those that are not off.
+  void solve_switches(double tolerance, int most_steps, int most_rounds) {
+    solver_.use(std::vector<bool>(solver_.links().size(), true));
+    converge(tolerance, kStepsWithAll);
+    const auto is_not_off = [this](const Link&, double chi2, int) { return solver_.best_switch(chi2) >= kOff; };
+    settle(is_not_off, tolerance, most_steps, most_rounds);
+  }
+
+  /// From the poses as they are, and from those of the chain alone, which false links have not bent yet.
+  void search() {
+    std::vector<Pose2> best = solver_.poses();
+    double least = cost(solver_);
+    const auto try_from = [&](std::vector<Pose2> start) {
+      solver_.set_poses(std::move(start));
+      for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
+      solve_switches(kSearchTolerance, kSearchSteps, kSearchRounds);
+      if (const double reached = cost(solver_); reached < least) {
+        least = reached;
+        best = solver_.poses();
+      }
+    };
+    std::vector<Pose2> chain = chained_poses(solver_, variables_);
+    const bool is_chain = believed_cost(solver_) < kChained;
+    try_from(best);
+    if (!is_chain) try_from(std::move(chain));
+    solver_.set_poses(std::move(best));
+  }
+
+  /// Solves with the links that the rule chooses by their squared errors, again and again until they stay the same.
+  template <typename Rule>
+  void settle(const Rule& takes_part, double tolerance, int most_steps, int most_rounds) {
+    for (int round = 0; round < most_rounds; ++round) {
+      std::vector<bool> on;
+      for (std::size_t k = 0; k < solver_.links().size(); ++k) {
+        const Link& link = solver_.links()[k];
+        const double chi2 = solver_.squared_error(link);
+        on.push_back(!link.switchable || takes_part(link, chi2, round));
+        if (link.switchable) solver_.set_switch(k, solver_.best_switch(chi2));
+      }
+      if (!solver_.use(on) && round > 0) return;
+      converge(tolerance, most_steps);
+    }
+  }
+
+  void converge(double tolerance, int most_steps) {
+    progress_ = GraphSolver::Progress::kMoved;
+    for (int k = 0; k < most_steps && iterations_ < options_.max_iterations; ++k) {
+      progress_ = solver_.step(tolerance);
+      ++iterations_;
+      if (progress_ != GraphSolver::Progress::kMoved) return;
+    }
+  }
+
+  GraphSolver& solver_;
+  const std::vector<int>& variables_;
+  const OptimizerOptions& options_;
+  int iterations_ = 0;
+  GraphSolver::Progress progress_ = GraphSolver::Progress::kMoved;
+};
+
+void write_back(const GraphSolver& solver, const std::vector<int>& variables, Graph& graph) {
   for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
-    if (anchors[k]) continue;  // keeps its very bits
-    const auto& [x, y, theta] = variables.poses[k];
-    graph.nodes[k].pose = {x, y, wrap_angle(theta)};
+    if (variables[k] < 0) continue;  // keeps its very bits
+    const Pose2& pose = solver.poses()[k];
+    graph.nodes[k].pose = {pose.x, pose.y, wrap_angle(pose.theta)};
   }
-  for (std::size_t k = 0; k < graph.switchable_edges.size(); ++k) {
-    // Its optimum lies inside [0, 1] (SwitchPrior), but the solver stops just short of it, on either side.
-    graph.switchable_edges[k].switch_value = std::clamp(variables.switches[k], 0.0, 1.0);
-  }
+}
+
+const char* describe(GraphSolver::Progress progress) {
+  if (progress == GraphSolver::Progress::kConverged) return "converged";
+  return progress == GraphSolver::Progress::kStuck ? "no step lowers the cost" : "reached the limit of iterations";
 }
 
 }  // namespace
@@ -181,22 +257,23 @@ void write_back(const Variables& variables, Graph& graph) {
 OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
   check_options(options);
   check_graph(graph);
-  Variables variables = read_variables(graph);
-  ceres::Problem::Options problem_options;
-  problem_options.disable_all_safety_checks = true;  // check_graph has done them; they cost as much as the building
-  ceres::Problem problem(problem_options);
-  build_problem(graph, options, variables, problem);
-
-  ceres::Solver::Summary solver_summary;
-  ceres::Solve(solver_options(options), &problem, &solver_summary);
-  if (solver_summary.IsSolutionUsable()) write_back(variables, graph);
-
+  const std::vector<int> variables = variables_of(graph, options.first_free_node);
+  GraphSolver solver(poses_of(graph), variables, links_of(graph, options.whitening),
+                     options.switchable_constraint_scale);
   OptimizerSummary summary;
-  summary.converged = solver_summary.termination_type == ceres::CONVERGENCE;
-  summary.iterations = std::max(0, static_cast<int>(solver_summary.iterations.size()) - 1);
-  summary.initial_cost = solver_summary.initial_cost;
-  summary.final_cost = solver_summary.final_cost;
-  summary.message = solver_summary.message;
+  summary.initial_cost = cost(solver);
+  Search search(solver, variables, options);
+  search.run();
+  summary.converged = search.progress() == GraphSolver::Progress::kConverged;
+  summary.iterations = search.iterations();
+  summary.final_cost = cost(solver);
+  summary.message = describe(search.progress());
+  write_back(solver, variables, graph);
+  for (std::size_t k = 0; k < graph.switchable_edges.size(); ++k) {
+    const double chi2 = solver.squared_error(solver.links()[graph.edges.size() + k]);
+    graph.switchable_edges[k].switch_value = solver.best_switch(chi2);
+    summary.chi_squared.push_back(chi2);
+  }
   return summary;
 }
 

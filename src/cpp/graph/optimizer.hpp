@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "oort/graph/graph.hpp"
 
@@ -18,22 +20,31 @@ struct OptimizerOptions {
   double switchable_constraint_scale = 2.0;
   Whitening whitening = Whitening::kCorrect;
   int max_iterations = 50;
+  /// Whether links that disagree with the optimum of the switches (at 95 %) are then left out, so that what is false
+  /// pulls no more at all. Without it the poses are the optimum of the switchable problem.
+  bool decide = true;
+  /// Nodes with lower ids keep their poses: solving is then about the newest nodes only, and costs as much as they do.
+  std::uint64_t first_free_node = 0;
 };
 
 struct OptimizerSummary {
   bool converged = false;
   int iterations = 0;
-  double initial_cost = 0.0;  ///< half the sum of squared residuals
+  /// Half the sum of chi^2 over the edges and of scale chi^2 / (scale + chi^2) over the switchable edges, where chi^2
+  /// is an edge's squared Mahalanobis distance; before and after.
+  double initial_cost = 0.0;
   double final_cost = 0.0;
+  /// chi^2 of each switchable edge at the final poses.
+  std::vector<double> chi_squared;
   std::string message;  ///< why the solver stopped
 };
 
-/// Moves the nodes and sets the switches to the least-squares optimum of all links (residuals.hpp).
+/// Moves the nodes to the optimum of all links, however many of the switchable ones are false, and sets the switches:
+/// scale / (scale + chi^2), the least costly with the final poses.
 ///
-/// Starts from the graph's own poses and switch values. The first node of the graph, and the first of every part that
-/// no edge links to it, keeps its pose. Deterministic: the same graph gives the same bits.
-/// If the solver stops at max_iterations the graph holds the best poses so far; if the solver fails the graph is left
-/// as it was; `converged` is false in both cases.
+/// Starts from the graph's own poses and switch values (docs/optimiser.md). The first node of the graph, and the first
+/// of every part that no edge links to it, keeps its pose. Deterministic: one thread; the same graph gives the same
+/// bits. If the solver stops at max_iterations the graph holds the best poses so far and `converged` is false.
 /// InputError, with the graph untouched, if a node, an edge or an option cannot be used; the message names it.
 OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options);
 

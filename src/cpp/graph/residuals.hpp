@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The residuals of the pose graph. Internal to the optimiser: an embedder who includes this header needs Ceres.
-#include <ceres/sized_cost_function.h>
-
+// Internal to the optimiser.
 #include <Eigen/Core>
 
 #include "oort/geometry/pose2.hpp"
@@ -22,44 +20,13 @@ Eigen::Vector3d constraint_error(const Pose2& T_map_i, const Pose2& T_map_j, con
 /// positive definite.
 Eigen::Matrix3d whitening_matrix(const Eigen::Matrix3d& covariance, Whitening whitening);
 
-/// r = W e (constraint_error, whitening_matrix), for a link that is always believed.
-/// Parameters: pose i (x, y, theta), pose j (x, y, theta).
+/// How constraint_error changes with the pose (x, y, theta) of either node.
 ///
 ///   de/dpose_i = [ -R^T | dR^T/dtheta (p_j - p_i) ; 0 0 | -1 ],  de/dpose_j = [ R^T | 0 ; 0 0 | 1 ],  R = R(theta_i)
-class ChainResidual final : public ceres::SizedCostFunction<3, 3, 3> {
- public:
-  ChainResidual(const Pose2& T_i_j, const Eigen::Matrix3d& whitening_matrix);
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
-
- private:
-  Pose2 T_i_j_;
-  Eigen::Matrix3d W_;
+struct ErrorJacobians {
+  Eigen::Matrix3d of_i;
+  Eigen::Matrix3d of_j;
 };
-
-/// r = s W e, for a link that may be switched off (Suenderhauf and Protzel 2012, "Switchable Constraints for Robust
-/// Pose Graph SLAM", with Psi(s) = s: the information of the link becomes s^2 times its own).
-/// Parameters: pose i, pose j, switch s. dr/dpose = s W de/dpose; dr/ds = W e.
-class SwitchableResidual final : public ceres::SizedCostFunction<3, 3, 3, 1> {
- public:
-  SwitchableResidual(const Pose2& T_i_j, const Eigen::Matrix3d& whitening_matrix);
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
-
- private:
-  ChainResidual chain_;
-};
-
-/// r = sqrt(scale) (1 - s): the price of switching a link off (the switch prior of the same paper, with gamma = 1 and
-/// variance 1 / scale). Parameter: switch s. dr/ds = -sqrt(scale).
-///
-/// With the poses held, 1/2 (s^2 chi^2 + scale (1 - s)^2) is least at s = scale / (scale + chi^2), which lies in
-/// (0, 1]: the switch needs no bounds.
-class SwitchPrior final : public ceres::SizedCostFunction<1, 1> {
- public:
-  explicit SwitchPrior(double scale);
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
-
- private:
-  double sqrt_scale_;
-};
+ErrorJacobians constraint_jacobians(const Pose2& T_map_i, const Pose2& T_map_j);
 
 }  // namespace oort

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "oort/mapping/frsm_setup.hpp"
+#include "oort/mapping/submaps.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "oort/mapping/chains.hpp"
-#include "oort/mapping/loop_closure_builder.hpp"
+#include "oort/mapping/closure.hpp"
 #include "oort/mapping/map.hpp"
 #include "oort/mapping/statistics.hpp"
 #include "oort/parameters/parameters.hpp"

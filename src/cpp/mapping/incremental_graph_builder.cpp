@@ -70,7 +70,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
   link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
-  link.covariance = match_covariance(node, T_local_anchor.theta, odometry);
+  link.covariance = match_covariance(node, T_local_anchor.theta, odometry, link.T_anchor_node.translation().norm());
   return link;
 }
 
@@ -103,13 +103,15 @@ Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_befo
 }
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& node, double heading,
-                                                          const Eigen::Matrix3d& odometry) const {
+                                                          const Eigen::Matrix3d& odometry, double distance) const {
   const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
   Eigen::Matrix3d covariance;
   if (motion_model_) {
     // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
     const Eigen::Matrix3d match = rotate_covariance(node.information, -heading) / (scale * scale);
     covariance = (match + odometry.inverse()).inverse();
+    const double heading_error = parameters_.frsm_matcher.heading_error_per_meter * distance;
+    covariance(2, 2) += heading_error * heading_error;
   } else {
     // As the original did: the matcher's own covariance, scaled, without its terms between position and heading.
     covariance = rotate_covariance(node.covariance, -heading) * (scale * scale);

@@ -55,7 +55,8 @@ class IncrementalGraphBuilder {
  private:
   std::string refusal(const TrackedScan& node, const Pose2& T_odometry_match) const;
   Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;
-  Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry) const;
+  Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry,
+                                   double distance) const;
 
   IncrementalGraphBuilderParameters parameters_;
   bool motion_model_;  // odometry's covariance grows with the motion, else it is constant

@@ -4,28 +4,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "oort/mapping/frsm_setup.hpp"
+#include "oort/mapping/facing.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
 namespace {
 
-// Of submaps in memory at once: enough for the places a robot passes between two visits to one of them.
-constexpr std::size_t kSubmapCacheBytes = std::size_t{128} << 20;
+// The window is never smaller: what is believed to be known well may be known worse.
+constexpr double kLeastWindow = 0.4;        // [m]
+constexpr double kLeastWindowTheta = 0.15;  // [rad]
+constexpr double kSigmasOfReach = 2.0;      // how much farther candidates may be for being uncertain
 
-// The rough match looks at this many points, evenly chosen; the fine one looks at all of them around the rough
-// one's pose.
-constexpr std::size_t kRoughPoints = 100;
-constexpr double kFineCells = 3.0;
-constexpr double kFineThetaSteps = 4.0;
+// Beyond this half width one scan is too little to go by.
+constexpr double kWideWindow = 0.7;       // [m]
+constexpr std::uint64_t kWideStride = 4;  // every how many-th node looks that far: what it sees changes little
+constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015};
 
-frsm::Points thinned(const frsm::Points& points) {
-  if (points.size() <= kRoughPoints) return points;
-  frsm::Points some;
-  for (std::size_t i = 0; i < kRoughPoints; ++i) some.push_back(points[i * points.size() / kRoughPoints]);
-  return some;
+// A closure that moves the newest node by more waits for others that say the same.
+constexpr double kFar = 0.5;        // [m]
+constexpr double kFarAngle = 0.15;  // [rad]
+constexpr const char* kUnconfirmed = "unconfirmed";
+
+LoopScale scan_scale(const LoopClosureGraphBuilderParameters& p) {
+  LoopScale scale;
+  scale.query_nodes = static_cast<std::uint64_t>(p.frsm_matcher.query_neighborhood_size);
+  scale.submap_nodes = static_cast<std::uint64_t>(p.candidate_search.submap_neighborhood_size);
+  return scale;
+}
+
+bool is_wide(const SearchWindow& window) {
+  return window.xy > kWideWindow;
 }
 
 std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) {
@@ -64,28 +73,35 @@ std::string refusal(const MatchFilterParameters& filter, double hits, const Diff
 
 LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
     : parameters_(parameters.loop_closure_graph_builder),
-      table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
-      submaps_(static_cast<std::uint64_t>(parameters_.candidate_search.submap_neighborhood_size), kSubmapCacheBytes,
-               table_, frsm::ContourParams::urg()),
-      matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
+      scan_matcher_(parameters, scan_scale(parameters_)),
+      way_matcher_(parameters, kWay) {}
 
 std::vector<Closure> LoopClosureBuilder::find(const Map& map, const Chains& chains, std::uint64_t query,
                                               ClosureCounts& counts) {
+  const bool adaptive = parameters_.frsm_matcher.search_window_sigmas > 0.0;
+  if (adaptive) {
+    uncertainty_.update(map.graph);
+    from_query_ = uncertainty_.from(map.graph, query);
+  }
   std::vector<Closure> closures;
-  const std::vector<std::uint64_t> found = candidates(map, chains, query);
-  if (found.empty()) return closures;
-  const frsm::Points points = gather_points(
-      map, chains, query,
-      chains.neighborhood(query, static_cast<std::uint64_t>(parameters_.frsm_matcher.query_neighborhood_size)));
-  for (const std::uint64_t candidate : found) {
+  for (const std::uint64_t candidate : candidates(map, chains, query)) {
+    const SearchWindow window = this->window(map, query, candidate);
+    if (adaptive && is_wide(window) && query % kWideStride != 0) continue;
     ++counts.tried;
     std::string reason;
-    std::optional<Closure> closure = match(map, chains, query, points, candidate, reason);
-    if (closure) {
+    const std::optional<Closure> closure = match(map, chains, query, candidate, window, reason);
+    if (!closure) {
+      ++counts.refused[reason];
+    } else if (!must_be_confirmed(map, *closure)) {
       ++counts.accepted;
       closures.push_back(*closure);
     } else {
-      ++counts.refused[reason];
+      ++counts.refused[kUnconfirmed];  // until it is
+      for (const Closure& confirmed : confirmation_.add(map, *closure)) {
+        --counts.refused[kUnconfirmed];
+        ++counts.accepted;
+        closures.push_back(confirmed);
+      }
     }
   }
   return closures;
@@ -100,7 +116,11 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
     const bool has_submap =
         (node.id - chains.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
     const double distance = (node.pose.translation() - center).norm();
-    const bool in_reach = search.max_candidate_distance == 0.0 || distance <= search.max_candidate_distance;
+    double reach = search.max_candidate_distance;
+    if (node.id < from_query_.size() && from_query_[node.id]) {
+      reach += kSigmasOfReach * std::sqrt(from_query_[node.id]->topLeftCorner<2, 2>().trace());
+    }
+    const bool in_reach = search.max_candidate_distance == 0.0 || distance <= reach;
     if (in_reach && has_submap && node.id != query &&
         !is_recent(chains, node.id, query, search.closest_allowed_id_threshold_small)) {
       by_distance.emplace_back(distance, node.id);
@@ -131,50 +151,57 @@ std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pa
   return chosen;
 }
 
+SearchWindow LoopClosureBuilder::window(const Map& map, std::uint64_t query, std::uint64_t candidate) const {
+  const FrsmLoopMatcherParameters& p = parameters_.frsm_matcher;
+  const double sigmas = p.search_window_sigmas;
+  const auto variances = [](double xy, double theta) {
+    return Eigen::Matrix3d(Eigen::Vector3d(xy * xy, xy * xy, theta * theta).asDiagonal());
+  };
+  if (sigmas == 0.0 || !from_query_[candidate]) {
+    return {p.search_window_xy, p.search_window_theta, variances(p.search_window_xy, p.search_window_theta)};
+  }
+  const Pose2& T_map_query = map.graph.nodes[query].pose;
+  const Eigen::Matrix3d covariance = inverse_covariance(between(T_map_query, map.graph.nodes[candidate].pose),
+                                                        rotate_covariance(*from_query_[candidate], -T_map_query.theta));
+  SearchWindow window;
+  window.xy =
+      std::clamp(sigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace()), kLeastWindow, p.search_window_xy);
+  window.theta = std::clamp(sigmas * std::sqrt(covariance(2, 2)), kLeastWindowTheta, p.search_window_theta);
+  // As a prior it is taken for twice as uncertain: what lies near the border is unlikely, not impossible.
+  window.covariance = 0.25 * (sigmas * sigmas * covariance + variances(kLeastWindow, kLeastWindowTheta));
+  return window;
+}
+
 std::optional<Closure> LoopClosureBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
-                                                 const frsm::Points& query_points, std::uint64_t candidate,
+                                                 std::uint64_t candidate, const SearchWindow& window,
                                                  std::string& reason) {
   const FrsmLoopMatcherParameters& p = parameters_.frsm_matcher;
-  const auto neighbors =
-      chains.neighborhood(candidate, static_cast<std::uint64_t>(parameters_.candidate_search.submap_neighborhood_size));
-  if (neighbors.size() <= static_cast<std::size_t>(p.submap_min_neighborhood_size)) {
-    reason = "small_submap";
-    return std::nullopt;
-  }
-  const Pose2 T_candidate_query = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
-  const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
-  const frsm::Prior prior{to_frsm(T_candidate_query), Eigen::Vector3d(p.search_window_xy * p.search_window_xy,
-                                                                      p.search_window_xy * p.search_window_xy,
-                                                                      p.search_window_theta * p.search_window_theta)
-                                                          .asDiagonal()};
-  const frsm::Match rough = matcher_.match(*submap, thinned(query_points), prior.mean,
-                                           {p.search_window_xy, p.search_window_xy, p.search_window_theta}, &prior);
-  if (rough.hits == 0) {
-    reason = "no_overlap";
-    return std::nullopt;
-  }
-  if (rough.hit_fraction < p.rough_match_hitpct_threshold) {
-    reason = "rough_hits";
-    return std::nullopt;
-  }
-  if (rough.saturated) {
-    reason = "window_border";
-    return std::nullopt;
-  }
-  const double fine_xy = kFineCells * table_.cell;
-  const frsm::Match fine = matcher_.match(*submap, query_points, rough.pose,
-                                          {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
-  if (fine.hit_fraction < p.fine_match_hitpct_threshold) {
-    reason = "fine_hits";
-    return std::nullopt;
-  }
-  const Pose2 T_match = from_frsm(fine.pose);
-  const Pose2 moved = between(T_candidate_query, T_match);
-  reason = refusal(p.match_filter, fine.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
+  const std::optional<LoopMatcher::Found> found =
+      (is_wide(window) && p.search_window_sigmas > 0.0 ? way_matcher_ : scan_matcher_)
+          .find(map, chains, query, candidate, window, reason);
+  if (!found) return std::nullopt;
+  const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
+  const Pose2 moved = between(expected, found->T_candidate_query);
+  reason = refusal(p.match_filter, found->hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
                    is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
-                   std::abs(T_candidate_query.theta) >= p.match_filter.opposite_dir_threshold);
+                   std::abs(expected.theta) >= p.match_filter.opposite_dir_threshold);
   if (!reason.empty()) return std::nullopt;
-  return Closure{query, candidate, inverse(T_match), inverse_covariance(T_match, fine.covariance), fine.hit_fraction};
+  const FacingMap facing(map, chains, candidate,
+                         chains.neighborhood(candidate, static_cast<std::uint64_t>(
+                                                            parameters_.candidate_search.submap_neighborhood_size)));
+  if (facing.agreement(surface_points(returns_of(map.clouds[query])), found->T_candidate_query) < p.min_facing_share) {
+    reason = "other_side";
+    return std::nullopt;
+  }
+  return Closure{query, candidate, inverse(found->T_candidate_query),
+                 inverse_covariance(found->T_candidate_query, found->covariance), found->hit_fraction};
+}
+
+bool LoopClosureBuilder::must_be_confirmed(const Map& map, const Closure& closure) const {
+  if (parameters_.frsm_matcher.search_window_sigmas == 0.0) return false;
+  const Pose2 expected = between(map.graph.nodes[closure.from].pose, map.graph.nodes[closure.to].pose);
+  const Pose2 moved = between(expected, closure.T_from_to);
+  return moved.translation().norm() >= kFar || std::abs(moved.theta) >= kFarAngle;
 }
 
 }  // namespace oort

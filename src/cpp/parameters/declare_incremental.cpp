@@ -46,9 +46,12 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
   v(p.max_point_range, "max_point_range", {25.0, "m", {0.5, 100.0}},
     "Points farther away are not drawn into the matcher's tables.")
       .own(25.0);
-  v(p.information_scale, "information_scale", {1.0, "", {0.001, 1000.0}},
+  v(p.heading_error_per_meter, "heading_error_per_meter", {0.03, "rad", {0.0, 1.0}},
+    "What a matched heading may be off for reasons that no single match shows, such as ranges that are all too long.")
+      .own(0.0, "Otherwise long loops in a short-range sensor's map do not close.");
+  v(p.information_scale, "information_scale", {8.0, "", {0.001, 1000.0}},
     "Log-likelihood of one point that lies on the map: how much a match counts against what odometry expects.")
-      .own(1.0);
+      .own(1.0, "Covariances are calibrated: their NEES over 20 made-up homes is 2.0 instead of 0.3.");
 }
 
 void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {

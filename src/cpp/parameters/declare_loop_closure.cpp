@@ -42,7 +42,8 @@ void declare_match_filter(const Section& v, MatchFilterParameters& p) {
   v(p.match_max_dist, "match_max_dist", {0.5, "m", {0.0, 1000.0}}, "Goes with match_hitpct_threshold.");
   v(p.match_hitpct_threshold_high, "match_hitpct_threshold_high", {0.8, "fraction", {0.0, 1.0}},
     "A match that moves the candidate by less than match_max_dist_high needs a share of hits above this.");
-  v(p.match_max_dist_high, "match_max_dist_high", {2.0, "m", {0.0, 1000.0}}, "Goes with match_hitpct_threshold_high.");
+  v(p.match_max_dist_high, "match_max_dist_high", {6.0, "m", {0.0, 1000.0}}, "Goes with match_hitpct_threshold_high.")
+      .documented(2.0, "What moves the query by more than 0.5 m is confirmed by other matches instead.");
   v(p.opposite_dir_threshold, "opposite_dir_threshold", {1.74, "rad", {0.0, 3.15}},
     "From this difference in heading on, before the match, two nodes look in opposite ways.");
   v(p.match_hitpct_threshold_opposite_dir, "match_hitpct_threshold_opposite_dir", {0.67, "fraction", {0.0, 1.0}},
@@ -67,12 +68,21 @@ void declare_loop_closure(const Section& v, LoopClosureGraphBuilderParameters& p
   frsm(p.frsm_matcher.query_neighborhood_size, "query_neighborhood_size", {1, "nodes", {1, 100}},
        "Nodes around the query whose scans are matched together.")
       .own(1);
-  frsm(p.frsm_matcher.search_window_xy, "search_window_xy", {1.0, "m", {0.01, 20.0}},
-       "Half width of the search around where the graph expects the query.")
-      .own(2.0, "What a chain drifts between two visits is less.");
-  frsm(p.frsm_matcher.search_window_theta, "search_window_theta", {0.35, "rad", {0.01, 3.15}},
-       "Half width of the search in heading.")
-      .own(0.52, "What a chain drifts between two visits is less.");
+  frsm(p.frsm_matcher.search_window_xy, "search_window_xy", {5.0, "m", {0.01, 20.0}},
+       "Widest half width of the search around where the graph expects the query.")
+      .own(2.0, "Intel's first round drifts by 3.3 m with readings cut at 3 m.");
+  frsm(p.frsm_matcher.search_window_theta, "search_window_theta", {0.5, "rad", {0.01, 3.15}},
+       "Widest half width of the search in heading.")
+      .own(0.52, "No chain turned by more.");
+  frsm(p.frsm_matcher.search_window_sigmas, "search_window_sigmas", {4.0, "standard deviations", {0.0, 100.0}},
+       "Half width of the search by how well the graph knows where the query is; search_window_xy and "
+       "search_window_theta are the widest. 0: always the widest.")
+      .own(0.0, "Long loops drift more than short ones.");
+  frsm(
+      p.frsm_matcher.min_facing_share, "min_facing_share", {0.6, "fraction", {0.0, 1.0}},
+      "Least share of the surfaces on which a match rests that face the same way as before: a thin wall looks the same "
+      "from both sides.")
+      .own(0.0, "Matches through walls are off by the walls' thickness.");
   declare_match_filter(frsm.section("match_filter"), p.frsm_matcher.match_filter);
   declare_branch_and_bound_matcher(v.section("branch_and_bound_matcher", ParameterStatus::kLater),
                                    p.branch_and_bound_matcher);

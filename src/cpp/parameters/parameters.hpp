@@ -84,6 +84,7 @@ struct FrsmMatcherParameters {
   double key_scan_distance;
   double key_scan_angle;
   double max_point_range;
+  double heading_error_per_meter;
   double information_scale;
   double scanmatch_cov_scale;
   double inflate_scanmatch_cov_scale;
@@ -184,6 +185,8 @@ struct FrsmLoopMatcherParameters {
   int query_neighborhood_size;
   double search_window_xy;
   double search_window_theta;
+  double search_window_sigmas;
+  double min_facing_share;
   MatchFilterParameters match_filter;
 };
 

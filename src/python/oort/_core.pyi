@@ -166,12 +166,18 @@ class OptimizerOptions:
     """The squared Mahalanobis distance at which a link is half switched off."""
     whitening: Whitening
     max_iterations: int
+    decide: bool
+    """Whether links that disagree with the optimum of the switches (at 95 %) are then left out."""
+    first_free_node: int
+    """Nodes before this one keep their poses."""
     def __init__(
         self,
         *,
         switchable_constraint_scale: float = 2.0,
         whitening: Whitening = ...,
         max_iterations: int = 50,
+        decide: bool = True,
+        first_free_node: int = 0,
     ) -> None: ...
 
 class OptimizerSummary:
@@ -183,9 +189,15 @@ class OptimizerSummary:
     def iterations(self) -> int: ...
     @property
     def initial_cost(self) -> float:
-        """Half the sum of squared residuals."""
+        """Half the sum of chi^2 over the edges and of scale chi^2 / (scale + chi^2) over the switchable ones.
+
+        chi^2 is the squared Mahalanobis distance.
+        """
     @property
     def final_cost(self) -> float: ...
+    @property
+    def chi_squared(self) -> NDArray[np.float64]:
+        """(S,) of each switchable edge, in their order, at the final poses."""
     @property
     def message(self) -> str:
         """Why the solver stopped."""
@@ -309,13 +321,14 @@ def optimize_graph(
     covariances: ArrayLike,
     switchable: ArrayLike,
     options: OptimizerOptions = ...,
+    switches: ArrayLike | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], OptimizerSummary]:
     """Solves a pose graph given as arrays.
 
     They are: node_poses (N, 3: x, y [m], theta [rad]) to start from; for each of M edges the nodes i and j (M,), the
     measured T_i_j (M, 3), its covariance (M, 3, 3; along the axes of node i) and whether it may be switched off (M,).
-    The first node of each connected part keeps its pose. Returns (poses (N, 3), switches (M,) in [0, 1], summary).
-    Raises InputError and ParameterError.
+    `switches` (M,) are those of an earlier solution; without them all are new. The first node of each connected part
+    keeps its pose. Returns (poses (N, 3), switches (M,) in [0, 1], summary). Raises InputError and ParameterError.
     """
 
 def optimize_map(map: Map, options: OptimizerOptions = ...) -> OptimizerSummary:

@@ -125,7 +125,7 @@ def evaluate_ate(trajectory: Trajectory, truth: Trajectory) -> AteResult:
     reference, found = _truth_at(trajectory.times, truth)
     _check_missing(int(np.count_nonzero(~found)), len(found), "poses")
     estimated, reference = trajectory.poses[found], reference[found]
-    errors = between(reference, compose(_alignment(estimated, reference), estimated))
+    errors = between(reference, compose(alignment(estimated, reference), estimated))
     distances = np.hypot(errors[:, 0], errors[:, 1])
     return AteResult(
         n=len(estimated),
@@ -151,7 +151,7 @@ def _truth_at(times: NDArray[np.float64], truth: Trajectory) -> tuple[NDArray[np
     return poses[before] + fraction * step, found
 
 
-def _alignment(estimated: NDArray[np.float64], reference: NDArray[np.float64]) -> NDArray[np.float64]:
+def alignment(estimated: NDArray[np.float64], reference: NDArray[np.float64]) -> NDArray[np.float64]:
     """T_reference_estimated (3,) that minimises the sum of squared distances of the positions.
 
     The planar case of Umeyama (1991) without scale: with centred positions a and b the angle is

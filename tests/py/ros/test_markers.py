@@ -95,6 +95,17 @@ def test_places_are_arrows_with_names() -> None:
     assert again == kinds  # the order in which places are told decides nothing
 
 
+def test_a_place_in_no_namespace_shows_its_id_alone() -> None:
+    kinds = by_kind(graph_markers(graph([(0, 0, 0)], [], []), [("", "sofa", (1.0, 2.0, 0.5))], "map", STAMP))
+    assert [name.text for name in kinds["place names"]] == ["sofa"]
+
+
+def test_a_name_is_not_in_its_arrows_way() -> None:
+    places = [("", "a", (1.0, 2.0, 0.5)), ("", "b", (1.0, 2.0, -0.5))]
+    kinds = by_kind(graph_markers(graph([(0, 0, 0)], [], []), places, "map", STAMP))
+    assert kinds["place names"][0].pose.position.y < 2.0 < kinds["place names"][1].pose.position.y
+
+
 def test_an_empty_map_deletes_what_was_shown() -> None:
     message = graph_markers(Map(), [], "map", STAMP)
     assert [marker.action for marker in message.markers] == [Marker.DELETEALL]

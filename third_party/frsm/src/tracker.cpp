@@ -17,6 +17,7 @@ constexpr double kWindowSigmas = 3.0;
 constexpr double kWorthwhileHits = 0.02;  // another guess must bring this many more hits to be believed
 constexpr double kRetryWindow = 3.0;      // the last try's window, and its prior's standard deviations twice as wide
 constexpr double kRetryPrior = 2.0;
+constexpr int kTellingHits = 4;       // times the fewest points that are matched
 constexpr double kLongestStep = 2.0;  // the constant velocity is not drawn out over more than this [s]
 
 Eigen::Matrix3d diagonal(double sigma_xy, double sigma_theta) {
@@ -67,8 +68,10 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
   if (history_.table().empty()) return start(body, time, expected);
   Match match = recover(body, time, expected, odometry.has_value(), try_match(body, expected, 1.0));
   // On the window's border but with good hits, the pose is still the best known; it must not shape the map, though.
-  const bool usable =
-      match.usable() || (match.status == Status::kSaturated && match.hit_fraction >= params_.retry_hits);
+  const bool good = match.hit_fraction >= params_.retry_hits;
+  // After a gap, a few hits among few points say little: what is seen may lie where the local map shows nothing.
+  const bool told = good || match.hits >= kTellingHits * params_.matcher.min_points || drift_.isZero(0.0);
+  const bool usable = (match.usable() && told) || (match.status == Status::kSaturated && good);
   matched_ = usable;
   if (usable) {
     if (match.usable() && should_add(match)) pending_ = Pending{drop_invalid(body), match.pose};
@@ -83,7 +86,9 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
       return start(body, time, expected);
     }
   }
-  remember(match.pose, time, expected.covariance, usable);
+  // After a gap, a match that leaves a direction open has not told where the sensor is.
+  const bool located = usable && (!match.degenerate || drift_.isZero(0.0));
+  remember(match.pose, time, located ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : match.covariance, usable);
   return match;
 }
 
@@ -124,7 +129,8 @@ Match Tracker::start(const Points& body, double time, const Prior& expected) {
   } else {
     pending_ = Pending{std::move(points), match.pose};
   }
-  remember(match.pose, time, expected.covariance, pending_.has_value());
+  const bool located = pending_.has_value();
+  remember(match.pose, time, located ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : expected.covariance, located);
   return match;
 }
 
@@ -159,9 +165,11 @@ Pose Tracker::predict(double time) const {
                       bounded(motion.theta, params_.max_search_range_theta)};
 }
 
+// The limits are those of one motion: after scans that could not be matched the window also covers their motions.
 Window Tracker::window(const Prior& prior, double scale) const {
   const auto half = [&](int i, double low, double high) {
-    return scale * std::clamp(kWindowSigmas * std::sqrt(prior.covariance(i, i)), low, high);
+    const double unmatched = kWindowSigmas * std::sqrt(drift_(i, i));
+    return scale * std::clamp(kWindowSigmas * std::sqrt(prior.covariance(i, i)), low, high + unmatched);
   };
   return {half(0, params_.initial_search_range_xy, params_.max_search_range_xy),
           half(1, params_.initial_search_range_xy, params_.max_search_range_xy),
@@ -202,11 +210,11 @@ bool Tracker::should_add(const Match& match) const {
   return moved >= rule.key_distance || turned >= rule.key_angle || match.hit_fraction < rule.hit_threshold;
 }
 
-void Tracker::remember(const Pose& pose, double time, const Eigen::Matrix3d& expected, bool usable) {
+void Tracker::remember(const Pose& pose, double time, const Eigen::Matrix3d& drift, bool usable) {
   velocity_.add(pose, time);
   pose_ = pose;
   if (usable) rejected_ = 0;
-  drift_ = usable ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : expected;
+  drift_ = drift;
 }
 
 }  // namespace frsm

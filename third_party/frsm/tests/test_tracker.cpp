@@ -256,6 +256,25 @@ TEST(Tracker, BlindMomentsAreBridgedByOdometry) {
   EXPECT_EQ(tracker.restarts(), 0);
 }
 
+// A turn on the spot from one view into another that the local map does not show, with little to see in between.
+TEST(Tracker, AFewHitsAfterAGapAreNotBelieved) {
+  const test::Scene behind = {{{-2.0, -0.6}, {-2.0, 0.6}}};
+  const Sensor sensor{181, kPi, 3.0, 0.005};
+  std::mt19937 random(5);
+  Tracker tracker;
+  const test::Scene ahead = test::room();
+  for (int i = 0; i < 5; ++i) {
+    tracker.track(test::scan(ahead, {}, sensor, random), 0.1 * i, Motion{{}, Eigen::Matrix3d::Identity() * 1e-6});
+  }
+  ASSERT_TRUE(tracker.matched());
+  const Motion turn{{0.0, 0.0, kPi / 2}, Eigen::Vector3d(1e-4, 1e-4, 0.01).asDiagonal()};
+  tracker.track({}, 0.6, turn);
+  const Points few = test::scan(behind, {0.0, 0.0, kPi}, {25, 0.6, 3.0, 0.005}, random);
+  ASSERT_GE(few.size(), 10U);
+  const Match match = tracker.track(few, 0.7, turn);
+  EXPECT_TRUE(!tracker.matched() || match.hit_fraction >= 0.8) << to_string(match.status) << " " << match.hit_fraction;
+}
+
 // T-15
 TEST(Tracker, TwoRunsGiveTheSameBytes) {
   const auto steps = drive(test::room(), 120, 14);

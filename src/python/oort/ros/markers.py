@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pose graph and the named places as markers for RViz, each kind in a namespace that can be shown or hidden."""
 
+import math
 from collections.abc import Iterable, Sequence
 
 import genpy
@@ -29,8 +30,8 @@ _NAMES = ("place names", ColorRGBA(0.3, 0.0, 0.3, 1.0), 0.3)
 
 _LINE_WIDTH = 0.02  # [m]
 _NODE_SIZE = 0.05  # [m]
-_ARROW = (0.3, 0.05, 0.05)  # length, width, height [m]
-_TEXT_HEIGHT = 0.15  # [m]
+_ARROW = (0.4, 0.08, 0.05)  # length, width, height [m]
+_TEXT_HEIGHT = 0.22  # [m]
 
 _Kind = tuple[str, ColorRGBA, float]  # namespace, colour, height [m]
 
@@ -64,12 +65,14 @@ def _lines(kind: _Kind, points: list[Point], i: NDArray[np.uint64], j: NDArray[n
 
 
 def _place(number: int, name_space: str, id_: str, pose: Pose) -> tuple[Marker, Marker]:
-    """An arrow and the name above it."""
+    """An arrow and its name, on the side to which it does not point."""
     arrow = _marker(_PLACES, Marker.ARROW, _ARROW, id=number)
-    name = _marker(_NAMES, Marker.TEXT_VIEW_FACING, (0.0, 0.0, _TEXT_HEIGHT), id=number, text=f"{name_space}/{id_}")
+    text = f"{name_space}/{id_}" if name_space else id_
+    name = _marker(_NAMES, Marker.TEXT_VIEW_FACING, (0.0, 0.0, _TEXT_HEIGHT), id=number, text=text)
     for marker in (arrow, name):
         marker.pose.position.x, marker.pose.position.y, theta = pose
         marker.pose.orientation = rotation(theta)
+    name.pose.position.y -= math.copysign(_TEXT_HEIGHT, math.sin(theta))
     return arrow, name
 
 

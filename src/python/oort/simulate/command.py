@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from oort.simulate.drive import Drive, SimulationConfig, simulate_drive
+from oort.simulate.drive import FAULTS, SCENES, Drive, SimulationConfig, simulate_drive
 from oort.simulate.sensor import Sensor
 from oort.simulate.writers import write_drive
 
@@ -23,9 +23,11 @@ def main(argv: Sequence[str] | None = None) -> int:
             beams=round(arguments.fov) if arguments.beams is None else arguments.beams,
             range_max=arguments.max_range,
         )
-        config = SimulationConfig(sensor, arguments.odometry_error, arguments.person, arguments.minutes)
+        config = SimulationConfig(
+            sensor, arguments.odometry_error, arguments.person, arguments.minutes, arguments.scene, arguments.fault
+        )
         drive = simulate_drive(arguments.seed, config)
-        name = arguments.name or f"home_{arguments.seed}"
+        name = arguments.name or f"{arguments.scene}_{arguments.seed}"
         paths = write_drive(drive, arguments.out, name, arguments.picture)
     except (OSError, ValueError) as error:
         print(f"oort simulate: {error}", file=sys.stderr)
@@ -44,7 +46,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--seed", type=int, default=0, help="the home and all that is random follow from it")
     parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="where the files go")
-    parser.add_argument("--name", help="the files' name without ending; home_SEED if not given")
+    parser.add_argument("--name", help="the files' name without ending; SCENE_SEED if not given")
+    parser.add_argument("--scene", choices=SCENES, default=SCENES[0], help="what the robot drives through")
+    parser.add_argument("--fault", choices=FAULTS, default=FAULTS[0], help="what goes wrong once on the way")
     parser.add_argument("--odometry-error", type=float, default=1.0, metavar="F", help="0: none, 3: a bad base")
     parser.add_argument("--fov", type=float, default=180.0, metavar="DEG", help="field of view, straight ahead")
     parser.add_argument("--beams", type=int, metavar="N", help="beams over it; one per degree if not given")

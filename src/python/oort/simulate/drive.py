@@ -1,35 +1,35 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""A drive through a made-up home, from the dock through all rooms and back onto the dock, with its ground truth."""
+"""A drive, by default through a made-up home from the dock through all rooms and back, with its ground truth."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from oort.poses import Array, between, compose, wrap_angle
-from oort.simulate import person
-from oort.simulate.driver import STEP, Driver, Motion
-from oort.simulate.home import DOCK_FRONT, Home, make_home
+from oort.simulate import faults, person
+from oort.simulate.alike import make_alike_home
+from oort.simulate.course import DOCKED, Course, drive_corridor, tour_home
+from oort.simulate.driver import STEP
+from oort.simulate.home import Home, make_home
 from oort.simulate.odometry import simulate_odometry
 from oort.simulate.planar import transform
 from oort.simulate.sensor import Sensor, cast_drive, measure
-from oort.simulate.tour import Places, find_places, plan_tour
 
+Rng = np.random.Generator
+
+SCENES = ("home", "alike", "corridor", "corridor-return")
+FAULTS = ("none", "freeze", "bump", "carried")
 START_STAMP = 1_600_000_000_000_000_000  # ns, of the first scan
 STEP_STAMP = round(STEP * 1e9)  # ns between odometry poses
 STEPS_PER_SCAN = 5  # 10 scans a second
-DOCKED = 2.0  # s on the dock, before and after
 AFTER_DOCKING = 1.05  # s from standing on the dock to the call that tells so; falls between two scans
-CRUISE = (0.28, 0.45)  # m/s
-MEAN_SPEED = 0.4  # m/s of routes' cost, turns and halts included, to guess a tour's length from its duration
 
 
 @dataclass(frozen=True)
 class SimulationConfig:
-    """What a simulated drive is like beside its seed, which alone decides home and way (but for ``minutes``)."""
+    """What a simulated drive is like beside its seed, which decides home and way of a scene (but for ``minutes``)."""
 
     sensor: Sensor = field(default_factory=Sensor)
     odometry_error: float = 1.0
@@ -38,6 +38,12 @@ class SimulationConfig:
     """Whether a person crosses the view now and then."""
     minutes: float = 3.0
     """Least duration, roughly: after a tour of all rooms the drive goes on to random places until then."""
+    scene: str = "home"
+    """One of SCENES: a home, a home of rooms that are all alike, or 30 m of bare corridor, there or there and back,
+    where nobody walks and ``minutes`` count for nothing."""
+    fault: str = "none"
+    """One of FAULTS, which happens once: odometry freezes for 2 s and then jumps to where it would be, a bump makes it
+    slip by 0.2 m and 20 degrees, or somebody carries the robot 1 m while the wheels stand still."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
@@ -45,6 +51,17 @@ class SimulationConfig:
             raise ValueError(f"odometry error factor {self.odometry_error:g}: choose one from 0 to 100")
         if not 0.0 <= self.minutes <= 40.0:
             raise ValueError(f"{self.minutes:g} minutes: choose from 0 to 40")
+        if self.scene not in SCENES:
+            raise ValueError(f"scene {self.scene!r}: choose one of {', '.join(SCENES)}")
+        if self.fault not in FAULTS:
+            raise ValueError(f"fault {self.fault!r}: choose one of {', '.join(FAULTS)}")
+        if self.fault == "carried" and self.in_corridor:
+            raise ValueError("nobody carries the robot in the corridor: choose another fault or scene")
+
+    @property
+    def in_corridor(self) -> bool:
+        """Whether the scene is a bare corridor."""
+        return self.scene.startswith("corridor")
 
 
 @dataclass(frozen=True)
@@ -85,6 +102,8 @@ class Drive:
     legs: Array
     """(n, 2, 2) centres of the person's legs in the map frame, NaN while there is none."""
     events: tuple[Event, ...]
+    fault_times: tuple[float, float] | None
+    """From when to when [s] the odometry told something else than the motion, beyond its usual errors."""
 
     @property
     def scan_times(self) -> Array:
@@ -149,30 +168,32 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
     config = config or SimulationConfig()
     if seed < 0:
         raise ValueError(f"seed {seed}: choose a whole number from 0")
-    streams = [np.random.Generator(np.random.PCG64(s)) for s in np.random.SeedSequence(seed).spawn(5)]
-    home_rng, way_rng, person_rng, odometry_rng, sensor_rng = streams
-    home, plan, grid = make_home(home_rng)
-    dock_front = transform(home.dock, [DOCK_FRONT, 0.0])
-    places = find_places(plan, grid, dock_front)
-    motion = _drive(home, places, config.minutes, way_rng)
-    poses = motion.poses[::STEPS_PER_SCAN]
-    period = STEP * STEPS_PER_SCAN
+    streams = [np.random.Generator(np.random.PCG64(s)) for s in np.random.SeedSequence(seed).spawn(6)]
+    home_rng, way_rng, person_rng, odometry_rng, sensor_rng, fault_rng = streams
+    course = _make_course(config, home_rng, way_rng, fault_rng)
+    whole = course.motion.steps.shape[0] // STEPS_PER_SCAN * STEPS_PER_SCAN  # the last step is the last scan's
+    all_poses, steps = course.motion.poses[: whole + 1], course.motion.steps[:whole]
+    poses = all_poses[::STEPS_PER_SCAN]
     legs = np.full((len(poses), 2, 2), np.nan)
-    if config.person:
-        legs = person.simulate_person(poses, period, places.path, len(places.cells), person_rng)
+    if config.person and course.places is not None:
+        places = course.places
+        legs = person.simulate_person(poses, STEP * STEPS_PER_SCAN, places.path, len(places.cells), person_rng)
     sensor_poses = compose(poses, config.sensor.mount)
-    true = cast_drive(config.sensor, sensor_poses, home.segments, home.discs, legs, person.LEG_RADIUS)
+    true = cast_drive(config.sensor, sensor_poses, course.home.segments, course.home.discs, legs, person.LEG_RADIUS)
     T_plan_map = sensor_poses[0]
     T_map_plan = between(T_plan_map, np.zeros(3))
-    T_map_base = between(T_plan_map, motion.poses)
+    T_map_base = between(T_plan_map, all_poses)
     start = np.array([*odometry_rng.uniform(-2.0, 2.0, 2), odometry_rng.uniform(-np.pi, np.pi)])
-    odometry = simulate_odometry(motion.steps, STEP, start, config.odometry_error, odometry_rng)
+    odometry = simulate_odometry(steps, STEP, start, config.odometry_error, odometry_rng)
     odometry[:, 2] = wrap_angle(odometry[:, 2])
+    faulty = course.carried
+    if config.fault in _ODOMETRY_FAULTS:
+        odometry, faulty = _ODOMETRY_FAULTS[config.fault](odometry, steps, STEP, fault_rng)
     odometry_stamps = START_STAMP + STEP_STAMP * np.arange(len(odometry), dtype=np.int64)
     return Drive(
         seed=seed,
         config=config,
-        home=home.moved(T_map_plan),
+        home=course.home.moved(T_map_plan),
         scan_stamps=odometry_stamps[::STEPS_PER_SCAN],
         ranges=measure(config.sensor, *true, sensor_rng),
         odometry_stamps=odometry_stamps,
@@ -181,44 +202,26 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
         T_map_base=T_map_base[::STEPS_PER_SCAN],
         T_map_base_at_odometry=T_map_base,
         legs=transform(T_map_plan, legs),
-        events=_events(odometry_stamps),
+        events=() if config.in_corridor else _events(odometry_stamps),
+        fault_times=None if faulty is None else _seconds(odometry_stamps, faulty),
     )
 
 
-def _drive(home: Home, places: Places, minutes: float, rng: np.random.Generator) -> Motion:
-    """From the dock along a tour, with halts and looks around here and there, and backwards onto the dock."""
-    driver = Driver(home.dock, places.grid)
-    driver.wait(DOCKED)
-    driver.follow(_straight(home.dock), float(rng.uniform(*CRUISE)))
-    tour = plan_tour(places, 60.0 * minutes * MEAN_SPEED, rng)
-    stretch: list[Array] = []
-    for start, goal in pairwise(tour):
-        stretch.append(places.path(start, goal))
-        halt = float(rng.random())
-        if goal == tour[-1] or halt < 0.3:
-            driver.follow(_joined(stretch), float(rng.uniform(*CRUISE)))
-            stretch = []
-        if goal != tour[-1] and halt < 0.15:
-            driver.turn_by(float(rng.choice([-1.0, 1.0])) * 2.0 * np.pi)
-        elif goal != tour[-1] and halt < 0.3:
-            driver.wait(float(rng.uniform(0.5, 2.0)))
-    driver.turn_to(float(home.dock[2]))
-    driver.back_onto(home.dock)
-    driver.wait(DOCKED)
-    motion = driver.motion()
-    whole = len(motion.steps) // STEPS_PER_SCAN * STEPS_PER_SCAN  # the last step is the last scan's
-    return Motion(motion.poses[: whole + 1], motion.steps[:whole])
+def _seconds(stamps: npt.NDArray[np.int64], steps: tuple[int, int]) -> tuple[float, float]:
+    return float(stamps[steps[0]] / 1e9), float(stamps[steps[1]] / 1e9)
 
 
-def _straight(dock: Array) -> Array:
-    """Points from the dock to the place before it."""
-    way = np.linspace(0.0, DOCK_FRONT, 9)
-    return transform(dock, np.column_stack([way, np.zeros_like(way)]))
+_ODOMETRY_FAULTS = {"freeze": faults.freeze, "bump": faults.bump}
 
 
-def _joined(paths: Sequence[Array]) -> Array:
-    """Paths that begin where the one before ends, as one without doubled points."""
-    return np.vstack([paths[0], *(path[1:] for path in paths[1:])])
+def _make_course(config: SimulationConfig, home_rng: Rng, way_rng: Rng, fault_rng: Rng) -> Course:
+    if config.in_corridor:
+        return drive_corridor(config.scene == "corridor-return", way_rng)
+    made = (make_alike_home if config.scene == "alike" else make_home)(home_rng)
+    course = tour_home(*made, config.minutes, way_rng, fault_rng if config.fault == "carried" else None)
+    if config.fault == "carried" and course.carried is None:
+        raise ValueError("the robot comes to no place that it could be carried from: choose another seed")
+    return course
 
 
 def _events(stamps: npt.NDArray[np.int64]) -> tuple[Event, ...]:

@@ -44,6 +44,16 @@ class Driver:
         self._steps: list[tuple[float, float]] = []
 
     @property
+    def pose(self) -> tuple[float, float, float]:
+        """Where the base is: x [m], y [m], heading [rad]."""
+        return self._x, self._y, self._heading
+
+    @property
+    def steps(self) -> int:
+        """How many steps there were so far."""
+        return len(self._steps)
+
+    @property
     def elapsed(self) -> float:
         """Time since the start, s."""
         return len(self._steps) * STEP
@@ -112,6 +122,14 @@ class Driver:
             turn = -2.5 * _wrap(self._heading - dock_heading) + 12.5 * aside
             self._step(-min(BACKING_SPEED, 0.02 + math.sqrt(0.6 * left)), max(-0.5, min(0.5, turn)))
         self.wait(0.0)
+
+    def be_carried(self, goal: tuple[float, float, float], seconds: float) -> None:
+        """Be brought to the pose ``goal`` by somebody, evenly, with the wheels at rest: the steps are zero."""
+        start, count = np.array(self.pose), round(seconds / STEP)
+        for share in np.arange(1, count + 1) / count:
+            self._x, self._y, self._heading = (start + share * (np.array(goal) - start)).tolist()
+            self._poses.append(self.pose)
+            self._steps.append((0.0, 0.0))
 
     def _progress(self, points: list[tuple[float, float]], way: list[float], nearest: int) -> int:
         """The last of the nearest points within a lookahead's way: where a path turns back, beyond the turn."""

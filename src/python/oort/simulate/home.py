@@ -74,25 +74,14 @@ def make_home(rng: np.random.Generator) -> tuple[Home, FloorPlan, ClearanceGrid]
     """Draw a home in its plan's frame, with its plan and its free space."""
     while True:
         plan = make_floor_plan(rng)
-        walls = _wall_segments(plan)
-        builder = _Furnisher(plan, walls, rng)
+        builder = Furnisher(plan, rng)
         if not builder.place_dock():
             continue
         builder.furnish()
-        pieces = tuple(builder.pieces)
-        sides = [np.hstack([solid, np.roll(solid, -1, axis=0)]) for piece in pieces for solid in piece.solids]
-        home = Home(
-            tuple(Room(room.kind, room.rect.polygon()) for room in plan.rooms),
-            tuple(doorway.gap.polygon() for doorway in plan.doorways),
-            pieces,
-            np.vstack([walls, *sides]),
-            np.vstack([piece.discs for piece in pieces]),
-            builder.dock,
-        )
-        return home, plan, builder.grid
+        return builder.home(), plan, builder.grid
 
 
-def _wall_segments(plan: FloorPlan) -> Array:
+def wall_segments(plan: FloorPlan) -> Array:
     """The faces of all walls as (n, 4), open where doorways are, and the two jambs of each doorway."""
     segments: list[tuple[float, float, float, float]] = []
     for index, room in enumerate(plan.rooms):
@@ -121,11 +110,13 @@ def _between(low: float, high: float, gaps: Sequence[tuple[float, float]]) -> It
     yield low, high
 
 
-class _Furnisher:
+class Furnisher:
     """Puts pieces into the rooms of a plan, one by one, and keeps every doorway reachable."""
 
-    def __init__(self, plan: FloorPlan, walls: Array, rng: np.random.Generator) -> None:
+    def __init__(self, plan: FloorPlan, rng: np.random.Generator) -> None:
+        """Start with the bare walls of ``plan``."""
         self.plan, self.rng = plan, rng
+        self._walls = wall_segments(plan)
         rects = [room.rect for room in plan.rooms]
         bounds = Rect(
             min(r.x0 for r in rects), min(r.y0 for r in rects), max(r.x1 for r in rects), max(r.y1 for r in rects)
@@ -133,7 +124,7 @@ class _Furnisher:
         self.grid = ClearanceGrid(bounds.grown(0.3, 0.3))
         for rect in [*rects, *(doorway.gap for doorway in plan.doorways)]:
             self.grid.open_rect(rect)
-        self.grid.block_segments(walls)
+        self.grid.block_segments(self._walls)
         self.pieces: list[Piece] = []
         self.dock = np.zeros(3)
         self._kept_free = [
@@ -147,21 +138,26 @@ class _Furnisher:
     def place_dock(self) -> bool:
         """Put the dock at a wall of the living room, not quite straight, with free floor before it."""
         index = [room.kind for room in self.plan.rooms].index("living room")
-        lane = Rect(-0.5, 0.0, 0.5, 1.5).polygon()
         for _ in range(10 * TRIES):
             pose = self._at_wall(self.plan.rooms[index].rect, 1.2)
             pose[2] += self.rng.uniform(-0.03, 0.03)
-            kept = transform(pose, lane)
-            base = compose(pose, [0.0, DOCK_SIZE[1] + DOCK_TO_BASE, 0.5 * np.pi])
-            front = transform(base, [DOCK_FRONT, 0.0])
-            if any(overlap(kept, other) for other in self._kept_free):
-                continue
-            self._must_reach[index].append((float(front[0]), float(front[1])))
-            if self._try(index, furniture.dock(*DOCK_SIZE).moved(pose)):
-                self._kept_free.append(kept)
-                self.dock = base
+            if self.dock_at(index, pose):
                 return True
-            self._must_reach[index].pop()
+        return False
+
+    def dock_at(self, index: int, pose: Array) -> bool:
+        """Put the dock into a room at ``pose`` (x along the wall, y into the room), if it fits."""
+        kept = transform(pose, Rect(-0.5, 0.0, 0.5, 1.5).polygon())
+        base = compose(pose, [0.0, DOCK_SIZE[1] + DOCK_TO_BASE, 0.5 * np.pi])
+        front = transform(base, [DOCK_FRONT, 0.0])
+        if any(overlap(kept, other) for other in self._kept_free):
+            return False
+        self._must_reach[index].append((float(front[0]), float(front[1])))
+        if self._try(index, furniture.dock(*DOCK_SIZE).moved(pose)):
+            self._kept_free.append(kept)
+            self.dock = base
+            return True
+        self._must_reach[index].pop()
         return False
 
     def furnish(self) -> None:
@@ -172,9 +168,30 @@ class _Furnisher:
         for index, room in enumerate(self.plan.rooms):
             if room.kind != "corridor" and self.rng.random() < 0.25:
                 self._wall_off_corner(index)
-            for wish in furniture.WISHES[room.kind]:
-                if self.rng.random() < wish.chance:
-                    self._place(index, wish)
+            self.furnish_room(index)
+
+    def furnish_room(self, index: int) -> None:
+        """A room's usual furniture as far as it fits."""
+        for wish in furniture.WISHES[self.plan.rooms[index].kind]:
+            if self.rng.random() < wish.chance:
+                self._place(index, wish)
+
+    def put(self, piece: Piece) -> None:
+        """Put a piece where it is, whatever it blocks."""
+        self.grid.block_polygon(piece.footprint)
+        self.pieces.append(piece)
+
+    def home(self) -> Home:
+        """The home as it is furnished so far."""
+        sides = [np.hstack([solid, np.roll(solid, -1, axis=0)]) for piece in self.pieces for solid in piece.solids]
+        return Home(
+            tuple(Room(room.kind, room.rect.polygon()) for room in self.plan.rooms),
+            tuple(doorway.gap.polygon() for doorway in self.plan.doorways),
+            tuple(self.pieces),
+            np.vstack([self._walls, *sides]),
+            np.vstack([piece.discs for piece in self.pieces]),
+            self.dock,
+        )
 
     def _place(self, index: int, wish: furniture.Wish) -> None:
         piece = wish.make(self.rng)

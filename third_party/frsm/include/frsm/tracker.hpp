@@ -101,7 +101,7 @@ class Tracker {
   Match recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best);
   Match start(const Points& body, double time, const Prior& expected);
   bool should_add(const Match& match) const;
-  void remember(const Pose& pose, double time, const Eigen::Matrix3d& expected, bool usable);
+  void remember(const Pose& pose, double time, const Eigen::Matrix3d& drift, bool usable);
 
   TrackerParams params_;
   Matcher matcher_;

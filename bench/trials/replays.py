@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""A recording through a session, with a look at each scan: what it cost and where the robot was thought to be then."""
+
+import math
+import resource
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from oort import Parameters
+from oort.events import Event
+from oort.poses import Array, between, compose
+from oort.recording import Recording
+from oort.report import Stopwatch
+from oort.results import Drive
+from oort.schedule import TimedSchedule
+from oort.session import Session
+from oort.trajectory import TrajectoryRecorder
+
+LIMIT = 5.0  # ms that a scan may cost outside the closing of loops
+
+
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """A replayed drive, for n scans."""
+
+    drive: Drive
+    """as oort.results writes it"""
+    T_map_base: Array
+    """(n, 3) at the final solution"""
+    T_map_base_then: Array
+    """(n, 3) as it was told right after each scan"""
+    seconds: Array
+    """(n,) of CPU that each scan took: what else the machine does counts for nothing"""
+    closes: np.ndarray[Any, np.dtype[np.bool_]]
+    """(n,) whether the scan tried loop closures or solved the graph"""
+
+
+def replay(recording: Recording, parameters: Parameters, events: Sequence[Event] = ()) -> Replayed:
+    """Maps a recording as oort.replay does and returns what came of it."""
+    watch = Stopwatch()
+    session = Session(parameters, recording.sensor_on_base)
+    recorder = TrajectoryRecorder(recording.sensor_on_base)
+    schedule = TimedSchedule(events, lambda _, event: session.call(event.call, event.args))
+    then: list[tuple[float, float, float]] = []
+    closes: list[bool] = []
+    times: list[float] = []
+    work = (0, 0)
+    session.start()
+    for scan in recording.scans():
+        schedule.maps(scan)
+        started = time.thread_time()
+        result = session.add_scan(scan)
+        watch.scan_seconds.append(time.thread_time() - started)
+        recorder.add(scan.stamp, scan.odometry, result)
+        before = work
+        if result is not None and result.outcome == "node":  # only a node closes loops, and asking takes its time
+            work = _work(session.mapper.statistics)
+        closes.append(work != before)
+        then.append(session.mapper.sensor_pose if session.mapper.has_pose else (math.nan,) * 3)
+        times.append(scan.time)
+    schedule.finish(math.inf)
+    session.stop()
+    T_sensor_base = between(recording.sensor_on_base, np.zeros(3))
+    return Replayed(
+        Drive(recording, parameters, session, recorder, watch, max(times) - min(times)),
+        recorder.base_poses(session.map),
+        compose(np.array(then), T_sensor_base),
+        np.array(watch.scan_seconds),
+        np.array(closes),
+    )
+
+
+def _work(statistics: dict[str, Any]) -> tuple[int, int]:
+    return statistics["loops"]["tried"], statistics["solves"]
+
+
+def cost(replayed: Replayed) -> dict[str, float]:
+    """CPU seconds and peak memory of this process so far, and ms per scan: of all, and of those that close no loop."""
+    ms, closes = 1e3 * replayed.seconds, replayed.closes
+    others = ms[~closes]
+    return {
+        "cpu_s": time.process_time(),
+        "memory_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "ms_mean": float(ms.mean()),
+        "ms_p50": float(np.percentile(ms, 50)),
+        "ms_p99": float(np.percentile(ms, 99)),
+        "ms_max": float(ms.max()),
+        "ms_p99_no_closing": float(np.percentile(others, 99)),
+        "ms_max_no_closing": float(others.max()),
+        "over_5_ms_no_closing": float((others > LIMIT).sum()),
+        "scans_no_closing": float(len(others)),
+        "seconds_no_closing": float(others.sum() / 1e3),
+        "seconds_closing": float(ms[closes].sum() / 1e3),
+    }
+
+
+def counts(replayed: Replayed) -> dict[str, float]:
+    """What the mapper counted."""
+    s = replayed.drive.session.mapper.statistics
+    figures: dict[str, float] = {key: s[key] for key in ("scans", "nodes", "odometry_links", "solves")}
+    figures |= {f"refused_{reason}": count for reason, count in s["match_refusals"].items()}
+    for kind in ("loops", "docks"):
+        figures |= {f"{kind}_tried": s[kind]["tried"], f"{kind}_accepted": s[kind]["accepted"]}
+        figures |= {f"{kind}_refused_{reason}": count for reason, count in s[kind]["refused"].items()}
+    switches = replayed.drive.session.map.switchable_edges["switch"]
+    return figures | {"closures_on": float((switches >= 0.5).sum()), "closures_off": float((switches < 0.5).sum())}

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapping/loop_matcher.hpp"
+
+#include <memory>
+
+#include "oort/mapping/frsm_setup.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+
+namespace oort {
+namespace {
+
+// Of submaps in memory at once: enough for the places a robot passes between two visits to one of them.
+constexpr std::size_t kSubmapCacheBytes = std::size_t{128} << 20;
+
+// How far around the rough match the fine one looks.
+constexpr double kFineCells = 3.0;
+constexpr double kFineThetaSteps = 4.0;
+
+frsm::Points thinned(const frsm::Points& points, std::size_t count) {
+  if (count == 0 || points.size() <= count) return points;
+  frsm::Points some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
+  return some;
+}
+
+frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const LoopScale& scale) {
+  frsm::MatcherParams params = matcher_params(p);
+  params.ambiguity_floor = scale.max_ambiguity;
+  return params;
+}
+
+}  // namespace
+
+LoopMatcher::LoopMatcher(const Parameters& parameters, const LoopScale& scale)
+    : parameters_(parameters.loop_closure_graph_builder.frsm_matcher),
+      scale_(scale),
+      table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
+      submaps_(scale.submap_nodes, kSubmapCacheBytes, table_, frsm::ContourParams::urg()),
+      matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale)) {}
+
+std::optional<LoopMatcher::Found> LoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
+                                                    std::uint64_t candidate, const SearchWindow& window,
+                                                    std::string& reason) {
+  if (chains.neighborhood(candidate, scale_.submap_nodes).size() <=
+      static_cast<std::size_t>(parameters_.submap_min_neighborhood_size)) {
+    reason = "small_submap";
+    return std::nullopt;
+  }
+  const frsm::Points points =
+      thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes)), scale_.fine_points);
+  const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
+  const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
+  const frsm::Prior prior{to_frsm(expected), window.covariance};
+  const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,
+                                           {window.xy, window.xy, window.theta}, &prior);
+  if (rough.hits == 0)
+    reason = "no_overlap";
+  else if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
+    reason = "rough_hits";
+  else if (rough.saturated)
+    reason = "window_border";
+  else if (rough.ambiguity > scale_.max_ambiguity)
+    reason = "ambiguous";
+  if (!reason.empty()) return std::nullopt;
+  const double fine_xy = kFineCells * table_.cell;
+  const frsm::Match fine = matcher_.match(*submap, points, rough.pose,
+                                          {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
+  if (fine.hit_fraction < parameters_.fine_match_hitpct_threshold) {
+    reason = "fine_hits";
+    return std::nullopt;
+  }
+  const Eigen::Vector3d bend(scale_.sigma_xy, scale_.sigma_xy, scale_.sigma_theta);
+  return Found{from_frsm(fine.pose), fine.covariance + Eigen::Matrix3d(bend.cwiseAbs2().asDiagonal()),
+               fine.hit_fraction};
+}
+
+}  // namespace oort

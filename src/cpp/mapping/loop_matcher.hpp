@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <frsm/matcher.hpp>
+#include <optional>
+#include <string>
+
+#include "oort/mapping/chains.hpp"
+#include "oort/mapping/map.hpp"
+#include "oort/mapping/submaps.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+/// Where a query is looked for in a candidate's submap: around the pose that the graph expects.
+struct SearchWindow {
+  double xy = 0.0;             ///< half width [m]
+  double theta = 0.0;          ///< half width [rad]
+  Eigen::Matrix3d covariance;  ///< of the expected T_candidate_query, along the axes of the candidate
+};
+
+/// How much is matched at once.
+struct LoopScale {
+  std::uint64_t query_nodes = 1;    ///< along the query's chain
+  std::uint64_t submap_nodes = 15;  ///< along the candidate's chain
+  std::size_t rough_points = 100;   ///< that the search over the whole window looks at, evenly chosen
+  std::size_t fine_points = 0;      ///< that the search around its result looks at; 0: all
+  double max_ambiguity = 1.0;       ///< largest score of the best pose elsewhere, as a share of the best; 1: any
+  double sigma_xy = 0.0;            ///< how far the chains are bent over the nodes that are matched [m]
+  double sigma_theta = 0.0;         ///< [rad]
+};
+
+/// Measures where a node stands in the submap of another: roughly over the whole window by branch and bound, then
+/// finely around the best (REQUIREMENTS O-87).
+class LoopMatcher {
+ public:
+  LoopMatcher(const Parameters& parameters, const LoopScale& scale);
+
+  struct Found {
+    Pose2 T_candidate_query;
+    Eigen::Matrix3d covariance;  ///< along the axes of the candidate
+    double hit_fraction = 0.0;
+  };
+
+  /// Sets `reason` when the query is not found.
+  std::optional<Found> find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
+                            const SearchWindow& window, std::string& reason);
+
+ private:
+  FrsmLoopMatcherParameters parameters_;
+  LoopScale scale_;
+  frsm::TableParams table_;
+  SubmapCache submaps_;
+  frsm::Matcher matcher_;
+};
+
+}  // namespace oort
