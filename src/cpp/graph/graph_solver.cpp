@@ -25,6 +25,7 @@ constexpr double kRounding = 1e-12;
 GraphSolver::GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<Link> links, double scale)
     : poses_(std::move(poses)), variables_(std::move(variables)), links_(std::move(links)), scale_(scale) {
   for (const int variable : variables_) variable_count_ = std::max(variable_count_, variable + 1);
+  cholesky_.analyze(static_cast<std::size_t>(variable_count_), {});
 }
 
 bool GraphSolver::use(const std::vector<bool>& on) {

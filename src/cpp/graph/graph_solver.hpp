@@ -59,6 +59,9 @@ class GraphSolver {
   /// Says which links take part (one flag for each). Returns whether that is anything new.
   bool use(const std::vector<bool>& on);
 
+  /// What a step costs, in blocks of the factor.
+  std::size_t fill() const { return cholesky_.fill(); }
+
   /// Tries one step. It has converged when the step promises to lower the cost by less than `tolerance`.
   Progress step(double tolerance);
 

@@ -28,9 +28,10 @@ constexpr double kAgreement = 7.815;
 // links, which join distant nodes, make each step dear.
 constexpr double kOff = 0.01;
 
-// How many steps are made with all links, the false ones included; then with those not off, before and between looking
-// again which those are.
+// How many steps are made with all links, the false ones included; only one if it is dear (blocks in the factor). Then
+// with those not off, before and between looking again which those are.
 constexpr int kStepsWithAll = 2;
+constexpr std::size_t kDear = 100'000;
 constexpr int kSearchRounds = 3;
 constexpr int kSearchSteps = 3;
 
@@ -39,7 +40,7 @@ constexpr int kRoundsBothWays = 10;
 
 // Solving ends with a step that lowers the cost by less: it moves nothing by as much as a thousandth of its standard
 // deviation, or, while the solution is searched for, a fifth.
-constexpr double kTolerance = 1e-7;
+constexpr double kTolerance = 1e-6;
 constexpr double kSearchTolerance = 1e-2;
 
 // Poses at which the links that are always believed cost less are those of the chain.
@@ -182,7 +183,7 @@ class Search {
   /// With all links, then with those that are not off.
   void solve_switches(double tolerance, int most_steps, int most_rounds) {
     solver_.use(std::vector<bool>(solver_.links().size(), true));
-    converge(tolerance, kStepsWithAll);
+    converge(tolerance, solver_.fill() < kDear ? kStepsWithAll : 1);
     const auto is_not_off = [this](const Link&, double chi2, int) { return solver_.best_switch(chi2) >= kOff; };
     settle(is_not_off, tolerance, most_steps, most_rounds);
   }

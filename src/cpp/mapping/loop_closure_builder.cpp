@@ -19,6 +19,11 @@ constexpr double kSigmasOfReach = 2.0;      // how much farther candidates may b
 // Beyond this half width one scan is too little to go by.
 constexpr double kWideWindow = 0.7;       // [m]
 constexpr std::uint64_t kWideStride = 4;  // every how many-th node looks that far: what it sees changes little
+
+// What a closure is off by that the shape of its match does not show: submaps are bent, and walls look thicker or
+// thinner from elsewhere. Mean ATE of 20 made-up homes 0.0122 m instead of 0.0143 m without.
+constexpr double kScanSigma = 0.03;        // [m]
+constexpr double kScanSigmaTheta = 0.008;  // [rad]
 constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015};
 
 // A closure that moves the newest node by more waits for others that say the same.
@@ -30,6 +35,10 @@ LoopScale scan_scale(const LoopClosureGraphBuilderParameters& p) {
   LoopScale scale;
   scale.query_nodes = static_cast<std::uint64_t>(p.frsm_matcher.query_neighborhood_size);
   scale.submap_nodes = static_cast<std::uint64_t>(p.candidate_search.submap_neighborhood_size);
+  if (p.frsm_matcher.search_window_sigmas > 0.0) {
+    scale.sigma_xy = kScanSigma;
+    scale.sigma_theta = kScanSigmaTheta;
+  }
   return scale;
 }
 
