@@ -49,9 +49,11 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
   v(p.heading_error_per_meter, "heading_error_per_meter", {0.03, "rad", {0.0, 1.0}},
     "What a matched heading may be off for reasons that no single match shows, such as ranges that are all too long.")
       .own(0.0, "Otherwise long loops in a short-range sensor's map do not close.");
-  v(p.information_scale, "information_scale", {8.0, "", {0.001, 1000.0}},
+  v(p.information_scale, "information_scale", {2.0, "", {0.001, 1000.0}},
     "Log-likelihood of one point that lies on the map: how much a match counts against what odometry expects.")
-      .own(1.0, "Covariances are calibrated: their NEES over 20 made-up homes is 2.0 instead of 0.3.");
+      .own(1.0,
+           "Intel with readings cut at 3 m 0.0177 m instead of 0.0259 m. 8 would give honest covariances on simulated "
+           "drives (NEES 2.0 instead of 0.45), but breaks 3 of 50 maps of a sensor that sees 90 degrees.");
 }
 
 void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
