@@ -132,6 +132,38 @@ def test_intel_converges(datasets: Path, switches: bool) -> None:
     assert summary.final_cost < summary.initial_cost
 
 
+def test_false_closures_pull_no_more(manhattan: PoseGraph) -> None:
+    """The poses are those of the graph without them."""
+    clean, _, _ = solve(manhattan, is_closure(manhattan))
+    spoilt = with_false_closures(manhattan, 100, seed=1)
+    poses, switches, summary = solve(spoilt, is_closure(spoilt))
+    assert position_rmse(poses, clean) < 1e-3
+    scale = _core.OptimizerOptions().switchable_constraint_scale
+    np.testing.assert_allclose(switches[is_closure(spoilt)], scale / (scale + summary.chi_squared), rtol=1e-9)
+
+
+def test_switches_of_an_earlier_solution_are_where_the_next_starts(manhattan: PoseGraph) -> None:
+    spoilt = with_false_closures(manhattan, 100, seed=1)
+    i, j = spoilt.edges.T
+    edges = (i, j, spoilt.measurements, spoilt.covariances, is_closure(spoilt))
+    poses, switches, first = _core.optimize_graph(spoilt.poses, *edges)
+    again, _, second = _core.optimize_graph(poses, *edges, switches=switches)
+    assert second.iterations < 5 < first.iterations
+    assert position_rmse(again, poses) < 1e-3
+    _, _, anew = _core.optimize_graph(poses, *edges)
+    assert anew.iterations > second.iterations
+
+
+def test_only_free_nodes_move(manhattan: PoseGraph) -> None:
+    i, j = manhattan.edges.T
+    options = _core.OptimizerOptions(first_free_node=3000)
+    poses, _, _ = _core.optimize_graph(
+        manhattan.poses, i, j, manhattan.measurements, manhattan.covariances, is_closure(manhattan), options
+    )
+    assert poses[:3000].tobytes() == manhattan.poses[:3000].tobytes()
+    assert np.abs(poses[3000:] - manhattan.poses[3000:]).max() > 0.1
+
+
 def test_same_graph_gives_the_same_bits(manhattan: PoseGraph) -> None:
     spoilt = with_false_closures(manhattan, 10, seed=2)
     first, second = (solve(spoilt, is_closure(spoilt)) for _ in range(2))
@@ -155,6 +187,8 @@ SQUARE: dict[str, Any] = {
         ("node_poses", np.zeros((3, 2)), r"node_poses must have the shape \(3, 3\), not \(3, 2\)"),
         ("measurements", np.zeros((2, 3)), r"measurements must have the shape \(3, 3\), not \(2, 3\)"),
         ("switchable", [True], "switchable"),
+        ("switches", [1.0], r"switches must have the shape \(3\), not \(1\)"),
+        ("switches", [1.0, 1.0, 1.5], "outside 0 to 1"),
         ("i", [0, 1, 7], r"edge 2 \(node 7 to 0\)"),
         ("j", [1, -2, 0], r"edge 1 .* names a node that is not in the graph"),
         ("covariances", np.zeros((3, 3, 3)), r"edge 0 .* covariance"),

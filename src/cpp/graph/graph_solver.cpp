@@ -17,8 +17,8 @@ constexpr double kLeastDamping = 1e-10;
 constexpr double kMostDamping = 1e6;
 constexpr double kLeastDiagonal = 1e-6;
 
-// A cost is not known more exactly than this, relative to itself.
-constexpr double kRounding = 1e-12;
+// A large graph is done when the promise is small beside its cost, too.
+constexpr double kRelativeTolerance = 1e-7;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ GraphSolver::Progress GraphSolver::step(double tolerance) {
     double promised = 0.0;  // by which the cost should fall: half of what the step and the gradient have in common
     for (std::size_t k = 0; k < delta_.size(); ++k) promised += 0.5 * delta_[k].dot(descent_[k]);
     for (const Eliminated& e : eliminated_) promised += 0.5 * e.gradient * e.gradient / e.curvature;
-    const bool small = promised <= tolerance + kRounding * before;
+    const bool small = promised <= tolerance + kRelativeTolerance * before;
 
     std::vector<Pose2> poses = moved_poses();
     switches = moved_switches();

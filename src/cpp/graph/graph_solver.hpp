@@ -62,7 +62,8 @@ class GraphSolver {
   /// What a step costs, in blocks of the factor.
   std::size_t fill() const { return cholesky_.fill(); }
 
-  /// Tries one step. It has converged when the step promises to lower the cost by less than `tolerance`.
+  /// Tries one step. It has converged when the step promises to lower the cost by less than `tolerance`, or
+  /// by next to nothing in proportion.
   Progress step(double tolerance);
 
  private:

@@ -24,16 +24,21 @@ constexpr double kLargestSquaredError = 1e100;
 // A link agrees with a solution if its squared error is at most this: 95 % of a chi-square of 3 degrees of freedom.
 constexpr double kAgreement = 7.815;
 
+// A link that was on and is now farther off than this (99.9 %) says that the solution may be another one altogether.
+constexpr double kSurprise = 16.266;
+
 // While the solution is searched for, a link whose best switch is below this is left out: it hardly pulls, and false
 // links, which join distant nodes, make each step dear.
 constexpr double kOff = 0.01;
 
-// How many steps are made with all links, the false ones included; only one if it is dear (blocks in the factor). Then
-// with those not off, before and between looking again which those are.
+// How many steps are made with all links, the false ones included; then with those not off, before and between looking
+// again which those are.
 constexpr int kStepsWithAll = 2;
-constexpr std::size_t kDear = 100'000;
 constexpr int kSearchRounds = 3;
 constexpr int kSearchSteps = 3;
+
+// Blocks in the factor from which on a step is dear: then one start must do.
+constexpr std::size_t kDear = 100'000;
 
 // From this round of deciding on, links only leave, so that deciding ends.
 constexpr int kRoundsBothWays = 10;
@@ -144,9 +149,9 @@ std::vector<Pose2> chained_poses(const GraphSolver& solver, const std::vector<in
 
 /// The way to the solution.
 ///
-/// If every link that was on agrees with the poses as they are, all that is left to do is to decide anew which agree.
-/// Else a link surprises, and what was believed may be wrong: all switches start at 1 again, so that links that were
-/// off together can come back together; a solution that costs more than the poses that were there is dropped.
+/// If no link that was on surprises, all that is left to do is to decide anew which agree. Else what was believed may
+/// be wrong: all switches start at 1 again, so that links that were off together can come back together; a solution
+/// that costs more than the poses that were there is dropped.
 class Search {
  public:
   Search(GraphSolver& solver, const std::vector<int>& variables, const OptimizerOptions& options)
@@ -162,7 +167,9 @@ class Search {
       return;
     }
     if (surprised) search();
-    const auto agrees = [](const Link& link, double chi2, int round) {
+    const double agreeing_switch = solver_.best_switch(kAgreement);
+    const auto agrees = [agreeing_switch](const Link& link, double chi2, int round) {
+      if (round == 0 && link.s > agreeing_switch) return chi2 <= kSurprise;  // may pull before it is judged
       return chi2 <= kAgreement && (round < kRoundsBothWays || link.on);
     };
     settle(agrees, kTolerance, options_.max_iterations, options_.max_iterations);
@@ -172,18 +179,19 @@ class Search {
   GraphSolver::Progress progress() const { return progress_; }
 
  private:
-  /// Whether a link that was on disagrees with the poses as they are.
+  /// Whether a link that was on is far off at the poses as they are.
   bool is_surprised() const {
     const double agreeing_switch = solver_.best_switch(kAgreement);
     return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
-      return link.switchable && link.s > agreeing_switch && solver_.squared_error(link) > kAgreement;
+      return link.switchable && link.s > agreeing_switch && solver_.squared_error(link) > kSurprise;
     });
   }
 
   /// With all links, then with those that are not off.
   void solve_switches(double tolerance, int most_steps, int most_rounds) {
     solver_.use(std::vector<bool>(solver_.links().size(), true));
-    converge(tolerance, solver_.fill() < kDear ? kStepsWithAll : 1);
+    is_dear_ = solver_.fill() >= kDear;
+    converge(tolerance, kStepsWithAll);
     const auto is_not_off = [this](const Link&, double chi2, int) { return solver_.best_switch(chi2) >= kOff; };
     settle(is_not_off, tolerance, most_steps, most_rounds);
   }
@@ -204,7 +212,7 @@ class Search {
     std::vector<Pose2> chain = chained_poses(solver_, variables_);
     const bool is_chain = believed_cost(solver_) < kChained;
     try_from(best);
-    if (!is_chain) try_from(std::move(chain));
+    if (!is_chain && !is_dear_) try_from(std::move(chain));
     solver_.set_poses(std::move(best));
   }
 
@@ -236,6 +244,7 @@ class Search {
   GraphSolver& solver_;
   const std::vector<int>& variables_;
   const OptimizerOptions& options_;
+  bool is_dear_ = false;
   int iterations_ = 0;
   GraphSolver::Progress progress_ = GraphSolver::Progress::kMoved;
 };
