@@ -1,0 +1,167 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""How false closures, and graphs of 10,000 nodes, become the optimiser: prints tables.
+
+    .venv/bin/python bench/graphs.py [--counts 0 10 100 1000 5000] [--kinds random ...] [--seeds 10] [--scale 2 4]
+        [--gtsam PYTHON [--methods plain gnc dcs] [--gtsam-seeds 1] [--limit 120]] [--closing]
+
+Manhattan 3500 (with its truth) is found through OORT_DATASETS (default ../shared/datasets). PYTHON is one that has
+GTSAM (`python3 -m venv DIR; DIR/bin/pip install gtsam`). --closing prints what closing a loop costs in long drives.
+"""
+
+import argparse
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from closing import measure_closing
+from false_closures import KINDS, Floats, SpoiltGraph, add_false_closures, count_agreeing_groups, is_closure
+from oort import _core
+from oort.export.g2o import PoseGraph, read_g2o
+
+ROOT = Path(__file__).resolve().parents[1]
+FOLDER = Path(os.environ.get("OORT_DATASETS", ROOT / "../shared/datasets")) / "posegraphs"
+
+
+class Outcome(NamedTuple):
+    """How one solver did on one graph."""
+
+    rmse: float
+    """[m]; infinite if it was stopped"""
+    seconds: float
+    kept: int
+    """False closures that the solution agrees with; -1: not known"""
+
+
+def position_rmse(poses: Floats, truth: Floats) -> float:
+    """Root mean square distance after the best rigid motion [m]."""
+    a = poses[:, :2] - poses[:, :2].mean(axis=0)
+    b = truth[:, :2] - truth[:, :2].mean(axis=0)
+    turn = np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
+    c, s = np.cos(turn), np.sin(turn)
+    return float(np.sqrt(np.mean(np.sum((a @ np.array([[c, s], [-s, c]]) - b) ** 2, axis=1))))
+
+
+def solve_with_oort(spoilt: SpoiltGraph, truth: Floats, scale: float) -> Outcome:
+    graph = spoilt.graph
+    i, j = graph.edges.T
+    options = _core.OptimizerOptions(switchable_constraint_scale=scale)
+    start = time.process_time()
+    poses, switches, _ = _core.optimize_graph(
+        graph.poses, i, j, graph.measurements, graph.covariances, is_closure(graph), options
+    )
+    seconds = time.process_time() - start
+    return Outcome(position_rmse(poses, truth), seconds, int((switches[spoilt.false] > 0.5).sum()))
+
+
+def solve_with_gtsam(spoilt: SpoiltGraph, truth: Floats, python: str, method: str, limit: float) -> Outcome:
+    graph = spoilt.graph
+    with tempfile.TemporaryDirectory() as scratch:
+        source, target = Path(scratch) / "graph.npz", Path(scratch) / "result.npz"
+        np.savez(
+            source,
+            poses=graph.poses,
+            edges=graph.edges,
+            measurements=graph.measurements,
+            covariances=graph.covariances,
+            switchable=is_closure(graph),
+        )
+        worker = Path(__file__).with_name("solve_with_gtsam.py")
+        try:
+            subprocess.run([python, str(worker), method, str(source), str(target)], check=True, timeout=limit)
+        except subprocess.TimeoutExpired:
+            return Outcome(float("inf"), limit, -1)
+        result = np.load(target)
+        return Outcome(position_rmse(result["poses"], truth), float(result["seconds"]), -1)
+
+
+def row(name: str, count: int, kind: str, outcomes: list[Outcome], groups: str = "") -> str:
+    errors = [outcome.rmse for outcome in outcomes]
+    seconds = [outcome.seconds for outcome in outcomes]
+    kept = sum(outcome.kept for outcome in outcomes)
+    return (
+        f"| {count} | {kind} | {name} | {len(outcomes)} | {statistics.median(errors):.4f} / {max(errors):.4f} | "
+        f"{statistics.median(seconds):.2f} / {max(seconds):.2f} | {'' if kept < 0 else kept} | {groups} |"
+    )
+
+
+def measure_manhattan(args: argparse.Namespace) -> Iterator[str]:
+    manhattan = read_g2o(FOLDER / "manhattanOlson3500.g2o")
+    truth = np.loadtxt(FOLDER / "manhattan_nodes_groundTruth.dat")
+    yield "| false | kind | solver | graphs | RMSE, m, median / worst | CPU s, median / worst | kept | groups agree |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for count in args.counts:
+        for kind in args.kinds if count else ["none"]:
+            seeds = range(args.seeds if count else 1)
+            graphs = [add_false_closures(manhattan, truth, kind if count else KINDS[0], count, seed) for seed in seeds]
+            groups = sum(count_agreeing_groups(graph, truth) for graph in graphs)
+            text = f"{groups} of {sum(graph.group.max() + 1 for graph in graphs)}" if "grouped" in kind else ""
+            for scale in args.scale:
+                outcomes = [solve_with_oort(graph, truth, scale) for graph in graphs]
+                yield row(f"Oort, scale {scale:g}", count, kind, outcomes, text)
+            for method in args.methods if args.gtsam else []:
+                few = graphs[: args.gtsam_seeds]
+                outcomes = [solve_with_gtsam(graph, truth, args.gtsam, method, args.limit) for graph in few]
+                yield row(f"GTSAM {method}", count, kind, outcomes)
+
+
+def measure_clean(graph: PoseGraph, name: str, scales: list[float]) -> Iterator[str]:
+    """How far the optimiser moves a clean graph from where plain least squares has it."""
+    i, j = graph.edges.T
+    never = np.zeros(len(i), dtype=bool)
+    plain, _, _ = _core.optimize_graph(graph.poses, i, j, graph.measurements, graph.covariances, never)
+    for scale in scales:
+        options = _core.OptimizerOptions(switchable_constraint_scale=scale)
+        poses, switches, _ = _core.optimize_graph(
+            graph.poses, i, j, graph.measurements, graph.covariances, is_closure(graph), options
+        )
+        off = int((switches < 0.5).sum())
+        yield f"| {name} | {scale:g} | {position_rmse(poses, plain):.5f} | {off} of {is_closure(graph).sum()} |"
+
+
+def describe_run() -> str:
+    def git(*words: str) -> str:
+        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
+
+    changed = " with changes" if git("status", "--porcelain") else ""
+    return f"commit {git('rev-parse', '--short', 'HEAD')}{changed}, {platform.machine()}, load {os.getloadavg()[0]:.1f}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--counts", type=int, nargs="+", default=[0, 10, 100, 1000, 5000])
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--scale", type=float, nargs="+", default=[2.0, 4.0], help="switchable_constraint_scale")
+    parser.add_argument("--gtsam", metavar="PYTHON")
+    parser.add_argument("--methods", nargs="+", choices=("plain", "gnc", "dcs"), default=["plain", "gnc", "dcs"])
+    parser.add_argument("--gtsam-seeds", type=int, default=1)
+    parser.add_argument("--limit", type=float, default=120.0, help="seconds for one run of GTSAM")
+    parser.add_argument("--closing", action="store_true", help="only what closing a loop costs")
+    args = parser.parse_args()
+    print(describe_run())
+    if args.closing:
+        for line in measure_closing():
+            print(line, flush=True)
+        return 0
+    print("| graph | scale | RMSE to plain least squares, m | closures off |\n|---|---|---|---|")
+    for name in ("manhattanOlson3500", "intel"):
+        for line in measure_clean(read_g2o(FOLDER / f"{name}.g2o"), name, args.scale):
+            print(line, flush=True)
+    print()
+    for line in measure_manhattan(args):
+        print(line, flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
