@@ -4,6 +4,7 @@
 
 import importlib
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -160,6 +161,10 @@ def test_launch_files_run_the_program(ros: Core) -> None:
     assert f"{program} scan:=scan " in launch_command(ros, "/oort_slam", "oort.launch")
     kuri = launch_command(ros, "/oort_ros_mapping", "oort_ros_mapping.launch")
     assert f"nice -n 10 {program} scan:=scan_reduced_mapping " in kuri
+
+
+@pytest.mark.skipif(shutil.which("rviz") is None, reason="rviz is not installed")
+def test_launch_file_shows_the_node(ros: Core) -> None:
     rviz = launch_command(ros, "/oort_rviz", "rviz.launch", "scan:=near", "node:=mapper")
     assert f"-d {SHARE}/oort/rviz/oort.rviz /scan:=near /oort_slam/graph:=/mapper/graph" in rviz
 
