@@ -35,7 +35,7 @@ class LinkTest : public ::testing::Test {
   }
 
   /// The verdict where the match differs from what odometry says by `T_odometry_match`.
-  std::string refusal(const Pose2& T_odometry_match) const {
+  std::string refusal(const Pose2& T_odometry_match) {
     return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node).refusal;
   }
 

@@ -12,6 +12,9 @@
 namespace oort {
 namespace {
 
+// A match tells how good odometry is if so many of its returns hit.
+constexpr double kTellingHits = 0.8;
+
 frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   frsm::TrackerParams params;
   params.table = table_params(p);
@@ -42,7 +45,7 @@ OdometryModel odometry_model(const OdometryNoiseParameters& p) {
 IncrementalGraphBuilder::IncrementalGraphBuilder(const Parameters& parameters)
     : parameters_(parameters.incremental_graph_builder),
       motion_model_(parameters_.odometry_model == "motion"),
-      odometry_model_(odometry_model(parameters_.odometry_noise)),
+      odometry_model_(odometry_model(parameters_.odometry_noise), parameters_.odometry_noise.least_learned),
       tracker_(tracker_params(parameters_.frsm_matcher)) {}
 
 void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
@@ -58,6 +61,7 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   tracked.information = match.information;
   tracked.covariance = match.covariance;
   tracked.hit_fraction = match.hit_fraction;
+  tracked.degenerate = match.degenerate;
   tracked.usable = tracker_.matched();
   tracked.restarted = tracker_.restarts() > restarts;
   tracked.status = frsm::to_string(match.status);
@@ -65,12 +69,16 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
 }
 
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
-                                        const TrackedScan& node) const {
+                                        const TrackedScan& node) {
   MatchLink link;
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
-  link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
+  const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
+  link.refusal = refusal(node, T_odometry_match);
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry, link.T_anchor_node.translation().norm());
+  if (link.refusal.empty() && !node.degenerate && node.hit_fraction >= kTellingHits) {
+    odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
+  }
   return link;
 }
 

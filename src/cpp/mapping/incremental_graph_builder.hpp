@@ -18,6 +18,7 @@ struct TrackedScan {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the match alone, axes of the local frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the match and what was expected, same axes
   double hit_fraction = 0.0;
+  bool degenerate = false;  ///< the match leaves a direction open
   bool usable = false;
   bool restarted = false;  ///< a fresh local map begins with this scan: the old one did not fit any more
   std::string status;
@@ -43,8 +44,9 @@ class IncrementalGraphBuilder {
   /// (since begin(): the identity).
   TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor);
 
-  /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor.
-  MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node) const;
+  /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor,
+  /// and learns from it how good the odometry is.
+  MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node);
 
   /// Overrules the matcher: the scan just tracked is at this pose of the local frame.
   void correct(const Pose2& T_local_sensor);
@@ -60,7 +62,7 @@ class IncrementalGraphBuilder {
 
   IncrementalGraphBuilderParameters parameters_;
   bool motion_model_;  // odometry's covariance grows with the motion, else it is constant
-  OdometryModel odometry_model_;
+  LearnedOdometry odometry_model_;
   frsm::Tracker tracker_;
 };
 

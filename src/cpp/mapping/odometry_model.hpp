@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 
 #include "oort/geometry/pose2.hpp"
 
@@ -19,6 +20,31 @@ struct OdometryModel {
 
   /// Covariance of a measured motion T_before_after, along the axes of the frame before.
   Eigen::Matrix3d covariance(const Pose2& T_before_after) const;
+};
+
+/// The model with two factors on its variances, of x and y and of theta, that follow how far odometry is from matches
+/// that see all directions: a good base is believed more, a bad one less. Deterministic; starts at the model's values.
+class LearnedOdometry {
+ public:
+  /// least: of the factors, as standard deviation (0 to 1); 1: nothing is learned.
+  LearnedOdometry(const OdometryModel& model, double least);
+
+  /// Covariance of a measured motion T_before_after, along the axes of the frame before.
+  Eigen::Matrix3d covariance(const Pose2& T_before_after) const;
+
+  /// Takes a motion by odometry and where the match found its end, seen from where odometry did.
+  void learn(const Pose2& T_before_after, const Pose2& T_odometry_match);
+
+  /// The factors, as standard deviations.
+  double translation_factor() const { return std::sqrt(translation_); }
+  double rotation_factor() const { return std::sqrt(rotation_); }
+
+ private:
+  OdometryModel model_;
+  double least_;  // of the factors on variances
+  double translation_ = 1.0;
+  double rotation_ = 1.0;
+  int steps_;
 };
 
 }  // namespace oort

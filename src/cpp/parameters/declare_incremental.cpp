@@ -74,6 +74,10 @@ void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
       .own(0.005);
   v(p.rotation_floor, "rotation_floor", {0.005, "rad", {1e-5, 1.0}}, "Standard deviation of the heading of any motion.")
       .own(0.005);
+  v(p.least_learned, "least_learned", {0.2, "", {0.01, 1.0}},
+    "How far the standard deviations above may shrink, as a factor, when matches that see all directions keep agreeing "
+    "with odometry; they grow (up to 3) when they keep disagreeing. 1: they stay as they are.")
+      .own(1.0, "WHY");
 }
 
 void declare_match_filtering(const Section& v, MatchFilteringParameters& p) {

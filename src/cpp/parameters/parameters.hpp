@@ -66,6 +66,7 @@ struct OdometryNoiseParameters {
   double rotation_per_radian;
   double translation_floor;
   double rotation_floor;
+  double least_learned;
 };
 
 struct FrsmMatcherParameters {
