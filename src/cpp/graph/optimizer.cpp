@@ -31,9 +31,9 @@ constexpr double kSurprise = 16.266;
 // links, which join distant nodes, make each step dear.
 constexpr double kOff = 0.01;
 
-// How many steps are made with all links, the false ones included; then with those not off, before and between looking
-// again which those are.
-constexpr int kStepsWithAll = 2;
+// How many steps are made before links that are off are left out; then before and between looking again which those
+// are.
+constexpr int kFirstSteps = 2;
 constexpr int kSearchRounds = 3;
 constexpr int kSearchSteps = 3;
 
@@ -163,7 +163,7 @@ class Search {
       for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
     }
     if (!options_.decide) {
-      solve_switches(kTolerance, options_.max_iterations, options_.max_iterations);
+      solve_switches(0.0, kTolerance, options_.max_iterations, options_.max_iterations);
       return;
     }
     if (surprised) search();
@@ -187,23 +187,28 @@ class Search {
     });
   }
 
-  /// With all links, then with those that are not off.
-  void solve_switches(double tolerance, int most_steps, int most_rounds) {
-    solver_.use(std::vector<bool>(solver_.links().size(), true));
+  /// With the links whose best switch is at least this, then with those that are not off.
+  void solve_switches(double least_switch, double tolerance, int most_steps, int most_rounds) {
+    std::vector<bool> on;
+    for (const Link& link : solver_.links()) {
+      on.push_back(!link.switchable || solver_.best_switch(solver_.squared_error(link)) >= least_switch);
+    }
+    solver_.use(on);
     is_dear_ = solver_.fill() >= kDear;
-    converge(tolerance, kStepsWithAll);
+    converge(tolerance, kFirstSteps);
     const auto is_not_off = [this](const Link&, double chi2, int) { return solver_.best_switch(chi2) >= kOff; };
     settle(is_not_off, tolerance, most_steps, most_rounds);
   }
 
-  /// From the poses as they are, and from those of the chain alone, which false links have not bent yet.
+  /// From the poses as they are, and from those of the chain alone, which false links have not bent yet; then once
+  /// more from the better ones, without the links that are off there, so that those in doubt get a second chance.
   void search() {
     std::vector<Pose2> best = solver_.poses();
     double least = cost(solver_);
-    const auto try_from = [&](std::vector<Pose2> start) {
+    const auto try_from = [&](std::vector<Pose2> start, double least_switch) {
       solver_.set_poses(std::move(start));
       for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
-      solve_switches(kSearchTolerance, kSearchSteps, kSearchRounds);
+      solve_switches(least_switch, kSearchTolerance, kSearchSteps, kSearchRounds);
       if (const double reached = cost(solver_); reached < least) {
         least = reached;
         best = solver_.poses();
@@ -211,8 +216,9 @@ class Search {
     };
     std::vector<Pose2> chain = chained_poses(solver_, variables_);
     const bool is_chain = believed_cost(solver_) < kChained;
-    try_from(best);
-    if (!is_chain && !is_dear_) try_from(std::move(chain));
+    try_from(best, 0.0);
+    if (!is_chain && !is_dear_) try_from(std::move(chain), 0.0);
+    try_from(best, kOff);
     solver_.set_poses(std::move(best));
   }
 
