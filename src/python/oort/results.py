@@ -39,7 +39,7 @@ class Drive:
 
 
 def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
-    """Writes trajectory.tum, map.pgm, .yaml and .png, histograms.png, graph.g2o and report.json to a folder, and the map.
+    """Writes the map, and trajectory.tum, map.pgm, .yaml and .png, histograms.png, graph.g2o, report.json to a folder.
 
     Returns the report. Raises OortError if something cannot be written.
     """
