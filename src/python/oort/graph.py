@@ -120,9 +120,7 @@ def read_truth(path: str | os.PathLike[str], graph: PoseGraph) -> NDArray[np.flo
             raise InputError(f"{path}: line {number}: expected x y theta, but there are {len(fields)} fields")
         rows.append(floats(fields, f"{path}: line {number}"))
     if len(rows) != len(graph.ids):
-        raise InputError(
-            f"{path} has {len(rows)} poses, the graph has {len(graph.ids)} nodes; do they belong together"
-        )
+        raise InputError(f"{path} has {len(rows)} poses, but the graph has {len(graph.ids)} nodes; is it its truth?")
     return np.array(rows)
 
 
