@@ -119,7 +119,7 @@ def compose(a: Floats, b: Floats) -> Floats:
 
 
 def squared_distance(a: Floats, b: Floats, information: Floats) -> Floats:
-    """(n,) e^T information e with e = a - b, headings wrapped."""
+    """(n,) e^T information e with e = a - b, headings wrapped; information (3, 3) or (n, 3, 3)."""
     error = a - b
     error[:, 2] = wrap(error[:, 2])
-    return np.asarray(np.einsum("ki,ij,kj->k", error, information, error))
+    return np.asarray(np.einsum("...i,...ij,...j->...", error, information, error))

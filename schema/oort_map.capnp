@@ -119,9 +119,19 @@ struct SidecarDb @0xad039fab7cfb237c {
 
 struct Map2dMetadata @0xa74d65c2b1e77767 {
     locations @0 :List(Location);
+
+    formatVersion @1 :UInt32;
+    # As in Map2d.
 }
 
 struct Map2d @0xd9ca05175c083d2b {
     graph @0 :Graph2d;
     sidecardb @1 :SidecarDb;
+
+    formatVersion @2 :UInt32;
+    # Not in the published schema, whose readers pass over it. 0: written
+    # before there were versions, that is by the original Oort.
+
+    writtenBy @3 :Text;
+    # Likewise. The program and its version, for people.
 }

@@ -389,7 +389,9 @@ TEST_F(Storage, TheGenuineMapComesBackByteForByte) {
   EXPECT_EQ(map.graph.switchable_edges.size(), 1U);
   EXPECT_EQ(map.clouds.at(8).points.size(), 180U);
   EXPECT_EQ(map.locations.at(0).name_space, "dock");
-  save_map(folder_ / "map", map);
+  SaveOptions as_original;
+  as_original.as_original = true;
+  save_map(folder_ / "map", map, as_original);
   for (const std::string& suffix : kSuffixes) {
     EXPECT_EQ(read_file(folder_ / ("map" + suffix)), read_file(genuine / ("map" + suffix))) << suffix;
   }

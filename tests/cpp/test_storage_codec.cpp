@@ -184,6 +184,33 @@ TEST(Codec, RefusesTheOtherFilesRoot) {
   EXPECT_THROW(decode_metadata(encode_map(make_map()), ""), MapFileError);
 }
 
+TEST(Codec, SignsMaps) {
+  const MapFormat format = decode_format(encode_map(make_map()), "");
+  EXPECT_EQ(format.version, kFormatVersion);
+  EXPECT_EQ(format.written_by.rfind("Oort ", 0), 0U);
+  const MapFormat original = decode_format(encode_map(make_map(), true), "");
+  EXPECT_EQ(original.version, kOriginalFormat);
+  EXPECT_EQ(original.written_by, "");
+}
+
+TEST(Codec, TheFormatDoesNotChangeTheContent) {
+  const Map again = decode_map(encode_map(make_map(), true), "");
+  EXPECT_EQ(encode_map(again), encode_map(make_map()));
+  EXPECT_LT(encode_map(again, true).size(), encode_map(again).size());
+  EXPECT_EQ(decode_metadata(encode_metadata(make_map().locations, true), "").size(), 2U);
+}
+
+TEST(Codec, RefusesANewerFormatAsSuch) {
+  Words words = unpack(encode_map(make_map()));
+  ASSERT_EQ(words.at(2), kFormatVersion) << "the root's data follow the root pointer";
+  words[2] = kFormatVersion + 1;
+  const std::string bytes = pack(words), error = decode_error(bytes);
+  EXPECT_EQ(decode_format(bytes, "").version, kFormatVersion + 1);
+  const std::string words_of_it = "home.map_capnp has the map format " + std::to_string(kFormatVersion + 1);
+  EXPECT_NE(error.find(words_of_it + ", written by Oort "), std::string::npos) << error;
+  EXPECT_EQ(error.find("damaged"), std::string::npos) << error;
+}
+
 TEST(Codec, RefusesACovarianceThatIsNot3x3) {
   Words words = unpack(encode_map(make_map()));
   ASSERT_EQ(pack(words).size() > 0, true);

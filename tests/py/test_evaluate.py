@@ -135,6 +135,8 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
         "relations    2 (0 missing)\n"
         "translation  mean 0.3000 m  std 0.2000 m  max 0.5000 m\n"
         "rotation     mean 5.0000 deg  std 5.0000 deg  max 10.0000 deg\n"
+        "squared      mean 0.130000 m^2  std 0.120000 m^2\n"
+        "squared      mean 50.0000 deg^2  std 50.0000 deg^2\n"
     )
     assert main(["relations", str(trajectory), str(relations), "--json", "--max-seconds", "20"]) == 0
     printed = json.loads(capsys.readouterr().out)

@@ -104,6 +104,12 @@ def test_graphs_that_do_not_fit_are_refused(tmp_path: Path) -> None:
         ("VERTEX_SE2 0 1 2\n", "line 1: VERTEX_SE2 must have 5 fields, but has 4"),
         ("VERTEX_SE2 0 1 2 x\n", "line 1: expected finite numbers"),
         ("EDGE_SE2 0 1 0 0 0 1 0 0 -1 0 1\n", "line 1: information must be finite and positive definite"),
+        ("VERTEX_SE2 0 0 0 0\n\nVERTEX_SE2 0 1 2 0\n", "line 3: there is a vertex 0 already"),
+        ("VERTEX_SE2 0.5 0 0 0\n", "line 1: ids of vertices are whole numbers, not '0.5'"),
+        ("VERTEX_SE2 99999999999999999999 0 0 0\n", "line 1: ids of vertices are whole numbers"),
+        ("EDGE_SE2 0 1 0 0 0 1 0 0 1 0 1\nVERTEX_SE2 0 0 0 0\n", "line 1: the edge has the vertex 1, which"),
+        ("VERTEX_SE2 4 0 0 0\nEDGE_SE2 4 4 0 0 0 1 0 0 1 0 1\n", "line 2: the edge links the vertex 4 to itself"),
+        ("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 0 0 0 1 0 0 1 0\n", "line 2: EDGE_SE2 must have 12 fields, but has 11"),
     ],
 )
 def test_damaged_files_are_refused(tmp_path: Path, text: str, message: str) -> None:

@@ -28,6 +28,7 @@ RESULTS = {
     "map.pgm",
     "map.yaml",
     "map.png",
+    "histograms.png",
     "graph.g2o",
     "report.json",
     "map.map_capnp",

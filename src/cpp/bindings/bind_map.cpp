@@ -192,8 +192,27 @@ void bind_storage(py::module_& m) {
       },
       py::arg("path"), py::arg("ignore_checksum") = false,
       "Reads a map given by its base path, one of its files, or X.capnp. Raises MapFileError.");
-  m.def("save_map", &save_map, py::arg("path"), py::arg("map"), py::call_guard<py::gil_scoped_release>(),
-        "Writes a map's three files as one. Raises MapFileError; the old map is then still whole.");
+  py::class_<MapFormat>(m, "MapFormat", "Which format a map file has.")
+      .def_readonly("version", &MapFormat::version, "0 for a map of the original Oort.")
+      .def_readonly("written_by", &MapFormat::written_by, "The program and its version; empty if it is not known.");
+  m.attr("FORMAT_VERSION") = py::int_(kFormatVersion);
+  m.def(
+      "read_map_format",
+      [](const std::string& path, bool ignore_checksum) {
+        const py::gil_scoped_release release;
+        return read_map_format(path, LoadOptions{ignore_checksum});
+      },
+      py::arg("path"), py::arg("ignore_checksum") = false,
+      "In which format a map is, even if it is too new to be loaded. Raises MapFileError.");
+  m.def(
+      "save_map",
+      [](const std::string& path, const Map& map, bool as_original) {
+        const py::gil_scoped_release release;
+        save_map(path, map, SaveOptions{as_original});
+      },
+      py::arg("path"), py::arg("map"), py::arg("as_original") = false,
+      "Writes a map's three files as one, in the newest format or as the original Oort did. Raises MapFileError; the "
+      "old map is then still whole.");
   m.def("save_metadata", &save_metadata, py::arg("path"), py::arg("map"), py::call_guard<py::gil_scoped_release>(),
         "Writes a map's locations, or the whole map where those on disk would not fit them. Raises MapFileError.");
   m.def(

@@ -139,7 +139,7 @@ void GraphSolver::add_link(std::size_t place) {
 std::vector<Pose2> GraphSolver::moved_poses() const {
   std::vector<Pose2> poses = poses_;
   for (std::size_t node = 0; node < poses.size(); ++node) {
-    if (variables_[node] < 0) continue;
+    if (is_held(node)) continue;
     const Eigen::Vector3d& delta = delta_[variables_[node]];
     poses[node] = {poses[node].x + delta.x(), poses[node].y + delta.y(), poses[node].theta + delta.z()};
   }

@@ -47,6 +47,7 @@ class GraphSolver {
 
   const std::vector<Pose2>& poses() const { return poses_; }
   const std::vector<Link>& links() const { return links_; }
+  bool is_held(std::size_t node) const { return variables_[node] < 0; }
   /// |W e|^2 at the present poses.
   double squared_error(const Link& link) const { return squared_error(link, poses_); }
   /// The switch at which a link costs least with the poses held: scale / (scale + chi2).

@@ -117,6 +117,23 @@ void read_message(const std::string& bytes, unsigned root_pointers, ReadRoot&& r
   if (stream.tryGetReadBuffer().size() != 0) throw MapFileError("there are bytes after the end of the message");
 }
 
+/// A message of a version that is not known yet is whole: what keeps it from being read is no damage.
+struct UnknownFormat : MapFileError {
+  using MapFileError::MapFileError;
+};
+
+MapFormat format_of(capnp::Map2d::Reader root) {
+  return {root.getFormatVersion(), root.getWrittenBy()};
+}
+
+void check_format(const MapFormat& format, const std::string& file) {
+  try {
+    require_known_format(format, file);
+  } catch (const MapFileError& error) {
+    throw UnknownFormat(error.what());
+  }
+}
+
 /// read_message(), in which whatever goes wrong becomes a MapFileError that names the file.
 template <typename Root, typename ReadRoot>
 void decode(const std::string& bytes, const std::string& file, unsigned root_pointers, ReadRoot&& read_root) {
@@ -128,6 +145,8 @@ void decode(const std::string& bytes, const std::string& file, unsigned root_poi
     read_message<Root>(bytes, root_pointers, read_root);
   } catch (const kj::Exception& error) {
     throw failed(error.getDescription().cStr());
+  } catch (const UnknownFormat&) {
+    throw;
   } catch (const MapFileError& error) {
     throw failed(error.what());
   } catch (const std::bad_alloc&) {
@@ -140,6 +159,7 @@ void decode(const std::string& bytes, const std::string& file, unsigned root_poi
 Map decode_map(const std::string& bytes, const std::string& file) {
   Map map;
   decode<capnp::Map2d>(bytes, file, 2, [&](capnp::Map2d::Reader root) {
+    check_format(format_of(root), file);
     map.graph = read(root.getGraph());
     read_sidecar(root.getSidecardb(), map);
   });
@@ -149,12 +169,19 @@ Map decode_map(const std::string& bytes, const std::string& file) {
 std::vector<Location> decode_metadata(const std::string& bytes, const std::string& file) {
   std::vector<Location> locations;
   decode<capnp::Map2dMetadata>(bytes, file, 1, [&](capnp::Map2dMetadata::Reader root) {
+    check_format({root.getFormatVersion(), ""}, file);
     for (const auto location : root.getLocations()) {
       locations.push_back(
           {location.getNamespace(), location.getUuid(), location.getNodeid(), read(location.getNTsensor())});
     }
   });
   return locations;
+}
+
+MapFormat decode_format(const std::string& bytes, const std::string& file) {
+  MapFormat format;
+  decode<capnp::Map2d>(bytes, file, 2, [&](capnp::Map2d::Reader root) { format = format_of(root); });
+  return format;
 }
 
 }  // namespace oort

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
+#include <capnp/any.h>
 #include <capnp/message.h>
 #include <capnp/serialize-packed.h>
 #include <kj/io.h>
@@ -89,6 +90,13 @@ void write_sidecar(const Map& map, capnp::SidecarDb::Builder out) {
   }
 }
 
+/// The root of a message that is as large as the published schema has it: without room for what was added since. Of
+/// the added fields none may then be set.
+template <typename Root>
+typename Root::Builder init_original_root(::capnp::MessageBuilder& message, std::uint16_t pointers) {
+  return message.getRoot<::capnp::AnyPointer>().initAsAnyStruct(0, pointers).as<Root>();
+}
+
 /// Runs `fill` on a new message and packs it.
 template <typename Fill>
 std::string packed(Fill&& fill) {
@@ -106,17 +114,23 @@ std::string packed(Fill&& fill) {
 
 }  // namespace
 
-std::string encode_map(const Map& map) {
+std::string encode_map(const Map& map, bool as_original) {
   return packed([&](::capnp::MessageBuilder& message) {
-    auto root = message.initRoot<capnp::Map2d>();
+    auto root = as_original ? init_original_root<capnp::Map2d>(message, 2) : message.initRoot<capnp::Map2d>();
     write(map.graph, root.initGraph());
     write_sidecar(map, root.initSidecardb());
+    if (as_original) return;
+    root.setFormatVersion(kFormatVersion);
+    root.setWrittenBy(writer_name());
   });
 }
 
-std::string encode_metadata(const std::vector<Location>& locations) {
+std::string encode_metadata(const std::vector<Location>& locations, bool as_original) {
   return packed([&](::capnp::MessageBuilder& message) {
-    auto list = message.initRoot<capnp::Map2dMetadata>().initLocations(static_cast<unsigned>(locations.size()));
+    auto root =
+        as_original ? init_original_root<capnp::Map2dMetadata>(message, 1) : message.initRoot<capnp::Map2dMetadata>();
+    if (!as_original) root.setFormatVersion(kFormatVersion);
+    auto list = root.initLocations(static_cast<unsigned>(locations.size()));
     for (unsigned k = 0; k < list.size(); ++k) {
       list[k].setNamespace(locations[k].name_space);
       list[k].setNodeid(locations[k].node_id);

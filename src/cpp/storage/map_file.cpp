@@ -74,10 +74,17 @@ Map load_map(const std::string& path, const LoadOptions& options) {
   return decode(read_set(files, options), files.map_path(), files.metadata_path());
 }
 
-void save_map(const std::string& path, const Map& map) {
+MapFormat read_map_format(const std::string& path, const LoadOptions& options) {
+  const std::string base = normalise_map_path(path);
+  if (is_single_file(path, base)) return decode_format(read_single_file(path, options).map, path);
+  FileSet files(base);
+  return decode_format(read_set(files, options).map, files.map_path());
+}
+
+void save_map(const std::string& path, const Map& map, const SaveOptions& options) {
   const std::string base = normalise_map_path(path);
   require_sound(map, base);
-  FileSet(base).write(encode_map(map), encode_metadata(map.locations));
+  FileSet(base).write(encode_map(map, options.as_original), encode_metadata(map.locations, options.as_original));
 }
 
 Saved save_metadata(const std::string& path, const Map& map) {

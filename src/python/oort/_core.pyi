@@ -13,6 +13,7 @@ _Location: TypeAlias = tuple[str, str, int, _Pose]  # namespace, id, node id, T_
 _Value: TypeAlias = bool | int | float | str
 
 __version__: str
+FORMAT_VERSION: int
 
 class Error(RuntimeError): ...
 class ParameterError(Error): ...
@@ -126,6 +127,16 @@ class Saved:
     def name(self) -> str: ...
     @property
     def value(self) -> int: ...
+
+class MapFormat:
+    """Which format a map file has."""
+
+    @property
+    def version(self) -> int:
+        """0 for a map of the original Oort."""
+    @property
+    def written_by(self) -> str:
+        """The program and its version; empty if it is not known."""
 
 class OccupancyGrid:
     """A map to navigate by: the fields of nav_msgs/OccupancyGrid."""
@@ -295,8 +306,14 @@ def parameter_table() -> list[ParameterEntry]:
 def load_map(path: str, ignore_checksum: bool = False) -> Map:
     """Reads a map given by its base path, one of its files, or X.capnp. Raises MapFileError."""
 
-def save_map(path: str, map: Map) -> None:
-    """Writes a map's three files as one. Raises MapFileError; the old map is then still whole."""
+def read_map_format(path: str, ignore_checksum: bool = False) -> MapFormat:
+    """In which format a map is, even if it is too new to be loaded. Raises MapFileError."""
+
+def save_map(path: str, map: Map, as_original: bool = False) -> None:
+    """Writes a map's three files as one, in the newest format or as the original Oort did.
+
+    Raises MapFileError; the old map is then still whole.
+    """
 
 def save_metadata(path: str, map: Map) -> Saved:
     """Writes a map's locations, or the whole map where those on disk would not fit them. Raises MapFileError."""

@@ -11,6 +11,8 @@ _TOOLS = {
     "render": "draw a saved map as pictures for map_server",
     "simulate": "make up a home and a drive through it",
     "evaluate": "compare a trajectory with what is known to be true",
+    "graph": "solve a pose graph in the g2o format",
+    "migrate": "write a saved map in the newest format",
     "parameters": "print the table of parameters",
 }
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares trajectories with the truth: `python -m oort.evaluate relations TRAJ FILE` and `... ate TRAJ TRUTH`.
 
-Trajectories are of the robot's base, in the TUM format.
+`... autogenerate MAP FILE` makes relations from a solved map. Trajectories are of the robot's base, in the TUM format.
 """
 
 import argparse
@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from oort import ground_truth
 from oort.errors import InputError, OortError
 from oort.export.files import floats, read_text
 from oort.export.tum import Trajectory, read_tum
@@ -41,6 +42,12 @@ class RelationsResult:
     """[deg], like std and max, of the absolute error"""
     rotation_std: float
     rotation_max: float
+    squared_translation_mean: float
+    """[m^2], like std"""
+    squared_translation_std: float
+    squared_rotation_mean: float
+    """[deg^2], like std"""
+    squared_rotation_std: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +98,10 @@ def evaluate_relations(
         rotation_mean=float(rotation.mean()),
         rotation_std=float(rotation.std()),
         rotation_max=float(rotation.max()),
+        squared_translation_mean=float((translation**2).mean()),
+        squared_translation_std=float((translation**2).std()),
+        squared_rotation_mean=float((rotation**2).mean()),
+        squared_rotation_std=float((rotation**2).std()),
     )
 
 
@@ -187,7 +198,9 @@ def format_result(result: RelationsResult | AteResult) -> str:
     return (
         f"relations    {r.n} ({r.missing} missing)\n"
         f"translation  mean {r.translation_mean:.4f} m  std {r.translation_std:.4f} m  max {r.translation_max:.4f} m\n"
-        f"rotation     mean {r.rotation_mean:.4f} deg  std {r.rotation_std:.4f} deg  max {r.rotation_max:.4f} deg"
+        f"rotation     mean {r.rotation_mean:.4f} deg  std {r.rotation_std:.4f} deg  max {r.rotation_max:.4f} deg\n"
+        f"squared      mean {r.squared_translation_mean:.6f} m^2  std {r.squared_translation_std:.6f} m^2\n"
+        f"squared      mean {r.squared_rotation_mean:.4f} deg^2  std {r.squared_rotation_std:.4f} deg^2"
     )
 
 
@@ -204,19 +217,26 @@ def _parser() -> argparse.ArgumentParser:
     relations.add_argument("reference", metavar="FILE", help="lines t1 t2 x y z roll pitch yaw")
     relations.add_argument("--max-seconds", type=float, help="only relations over less than this time [s]")
     ate.add_argument("reference", metavar="TRUTH", help="the true trajectory, in the TUM format")
+    autogenerate = commands.add_parser("autogenerate", help="relations from the closures of a solved map")
+    ground_truth.add_arguments(autogenerate)
     return parser
+
+
+def _compare(arguments: argparse.Namespace) -> RelationsResult | AteResult:
+    trajectory = read_tum(arguments.trajectory)
+    if arguments.command == "relations":
+        return evaluate_relations(trajectory, arguments.reference, max_seconds=arguments.max_seconds)
+    return evaluate_ate(trajectory, read_tum(arguments.reference))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     arguments = _parser().parse_args(argv)
-    result: RelationsResult | AteResult
     try:
-        trajectory = read_tum(arguments.trajectory)
-        if arguments.command == "relations":
-            result = evaluate_relations(trajectory, arguments.reference, max_seconds=arguments.max_seconds)
-        else:
-            result = evaluate_ate(trajectory, read_tum(arguments.reference))
+        if arguments.command == "autogenerate":
+            print(ground_truth.run(arguments))
+            return 0
+        result = _compare(arguments)
     except OortError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

@@ -63,6 +63,7 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
     recorder = TrajectoryRecorder(recording.sensor_on_base)
     schedule = make_schedule(options.events, _Caller(session, recorder))
     times: list[float] = []
+    scan_hits: list[float] = []
     if options.resume is not None:
         session.load(options.resume[0])
         session.resume("", options.resume[1])
@@ -74,6 +75,8 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
             started = time.perf_counter()
             result = session.add_scan(scan)
             watch.scan_seconds.append(time.perf_counter() - started)
+            if result is not None and result.status:
+                scan_hits.append(result.hit_fraction)
         recorder.add(scan.stamp, scan.odometry, result)
         times.append(scan.time)
     if not times:
@@ -85,7 +88,7 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
             f"{recording.name}: no scan made it into a map: each has fewer than "
             f"{parameters.get('min_pointcloud_size')} returns, or the map was cleared or never started"
         )
-    return Drive(recording, parameters, session, recorder, watch, max(times) - min(times))
+    return Drive(recording, parameters, session, recorder, watch, max(times) - min(times), scan_hits)
 
 
 def _until(scans: Iterator[Scan], seconds: float | None) -> Iterator[Scan]:
@@ -136,7 +139,8 @@ def replay_to_folder(
     report = write_results(replay(recording, parameters, options), folder, map_path)
     if not options.quiet:
         print(format_table(report))
-        print(f"wrote {folder}: trajectory.tum map.pgm map.yaml map.png graph.g2o report.json; map: {map_path}")
+        names = "trajectory.tum map.pgm map.yaml map.png histograms.png graph.g2o report.json"
+        print(f"wrote {folder}: {names}; map: {map_path}")
 
 
 def _parser() -> argparse.ArgumentParser:

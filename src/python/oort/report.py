@@ -48,6 +48,7 @@ def make_report(
     recorded_seconds: float,
     timings: Mapping[str, Any],
     map_figures: Mapping[str, Any],
+    histograms: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Everything that report.json holds. Only ``timings`` differs between two replays of the same input."""
     return {
@@ -57,6 +58,7 @@ def make_report(
         "recorded_seconds": recorded_seconds,
         **statistics,
         "map": dict(map_figures),
+        "histograms": dict(histograms),
         "timings": dict(timings),
         "parameters": dict(parameters),
     }

@@ -3,6 +3,7 @@
 """What a replay leaves in its folder."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,9 @@ import numpy as np
 
 from oort._core import Map, Parameters, render_map, save_map
 from oort.export import PoseGraph, write_g2o, write_map_server, write_picture, write_tum
+from oort.export.chart import write_chart
 from oort.export.files import write_atomically
+from oort.histograms import make_histograms, panels
 from oort.recording import Recording
 from oort.report import Stopwatch, make_report
 from oort.session import Session
@@ -31,10 +34,12 @@ class Drive:
     recorder: TrajectoryRecorder
     watch: Stopwatch
     recorded_seconds: float
+    scan_hits: Sequence[float] = ()
+    """hit fractions of the scans that were matched"""
 
 
 def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
-    """Writes trajectory.tum, map.pgm and .yaml, map.png, graph.g2o and report.json into a folder, and the map.
+    """Writes the map, and trajectory.tum, map.pgm, .yaml and .png, histograms.png, graph.g2o, report.json to a folder.
 
     Returns the report. Raises OortError if something cannot be written.
     """
@@ -59,6 +64,9 @@ def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
             rejected=closures[~on],
             locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
         )
+    histograms = make_histograms(map_, drive.scan_hits)
+    if drawn := panels(histograms):
+        write_chart(out / "histograms.png", drawn)
     report = make_report(
         drive.recording,
         drive.session.mapper.statistics,
@@ -72,6 +80,7 @@ def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
             "switchable_edges": len(map_.switchable_edges["switch"]),
             "switched_off": int((map_.switchable_edges["switch"] < _SWITCHED_OFF).sum()),
         },
+        histograms,
     )
     write_atomically(out / "report.json", (json.dumps(report, indent=2) + "\n").encode())
     return report

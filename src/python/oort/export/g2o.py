@@ -58,11 +58,13 @@ def write_g2o(path: str | os.PathLike[str], graph: PoseGraph) -> None:
 def read_g2o(path: str | os.PathLike[str]) -> PoseGraph:
     """Reads the planar part of a pose graph. Lines other than VERTEX_SE2 and EDGE_SE2 are left out.
 
-    Raises InputError if the file is missing or holds no vertex, or a line is damaged.
+    Raises InputError if the file is missing or holds no vertex, a line is damaged, a vertex is there twice or an edge
+    has one that is not there.
     """
     path = Path(path)
-    found: dict[str, list[list[float]]] = {keyword: [] for keyword in _FIELDS}
-    covariances = []
+    vertices: dict[int, list[float]] = {}
+    edges: list[tuple[str, list[int]]] = []  # with the place in the file
+    measurements, covariances = [], []
     for number, line in enumerate(read_text(path).splitlines(), 1):
         keyword, *fields = line.split() or [""]
         if keyword not in _FIELDS:
@@ -70,24 +72,46 @@ def read_g2o(path: str | os.PathLike[str]) -> PoseGraph:
         where = f"{path}: line {number}"
         if len(fields) + 1 != _FIELDS[keyword]:
             raise InputError(f"{where}: {keyword} must have {_FIELDS[keyword]} fields, but has {len(fields) + 1}")
-        values = floats(fields, where)
-        found[keyword].append(values)
+        count = 1 if keyword == "VERTEX_SE2" else 2
+        ids, values = _ids(fields[:count], where), floats(fields[count:], where)
         if keyword == "EDGE_SE2":
-            information = np.zeros((3, 3))
-            information[_UPPER] = values[5:]
-            information = information + np.triu(information, 1).T
-            covariances.append(_turned(_invert(information, f"{where}: information"), values[4]))
-    vertices = np.array(found["VERTEX_SE2"]).reshape(-1, 4)
-    edges = np.array(found["EDGE_SE2"]).reshape(-1, 11)
-    if not len(vertices):
+            edges.append((where, ids))
+            measurements.append(values[:3])
+            covariances.append(_covariance(values, where))
+        elif ids[0] in vertices:
+            raise InputError(f"{where}: there is a vertex {ids[0]} already; give each an id of its own")
+        else:
+            vertices[ids[0]] = values
+    if not vertices:
         raise InputError(f"{path} holds no VERTEX_SE2")
+    for where, ids in edges:
+        unknown = [str(id) for id in ids if id not in vertices]
+        if unknown:
+            raise InputError(f"{where}: the edge has the vertex {unknown[0]}, which the file does not hold")
+        if ids[0] == ids[1]:
+            raise InputError(f"{where}: the edge links the vertex {ids[0]} to itself")
     return PoseGraph(
-        ids=vertices[:, 0].astype(np.int64),
-        poses=vertices[:, 1:],
-        edges=edges[:, :2].astype(np.int64),
-        measurements=edges[:, 2:5],
+        ids=np.array(list(vertices), dtype=np.int64),
+        poses=np.array(list(vertices.values())),
+        edges=np.array([ids for _, ids in edges], dtype=np.int64).reshape(-1, 2),
+        measurements=np.array(measurements).reshape(-1, 3),
         covariances=np.array(covariances).reshape(-1, 3, 3),
     )
+
+
+def _ids(fields: list[str], where: str) -> list[int]:
+    """Ids of vertices. Raises InputError, naming the place, for anything that is no whole number of 64 bits."""
+    if not all(len(field) < 20 and field.removeprefix("-").isdecimal() and abs(int(field)) < 2**63 for field in fields):
+        raise InputError(f"{where}: ids of vertices are whole numbers, not {' '.join(fields)!r}")
+    return [int(field) for field in fields]
+
+
+def _covariance(values: list[float], where: str) -> NDArray[np.float64]:
+    """Of an edge: x, y, theta and the upper triangle of the information."""
+    information = np.zeros((3, 3))
+    information[_UPPER] = values[3:]
+    information = information + np.triu(information, 1).T
+    return _turned(_invert(information, f"{where}: information"), values[2])
 
 
 def _turned(covariance: NDArray[np.float64], theta: float) -> NDArray[np.float64]:

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/graph/search.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace oort {
+namespace {
+
+// A link agrees with a solution if its squared error is at most this: 95 % of a chi-square of 3 degrees of freedom.
+constexpr double kAgreement = 7.815;
+
+// A link that was on and is now farther off than this (99.9 %) says that the solution may be another one altogether.
+constexpr double kSurprise = 16.266;
+
+// While the solution is searched for, a link whose best switch is below this is left out: it hardly pulls, and false
+// links, which join distant nodes, make each step dear.
+constexpr double kOff = 0.01;
+
+// How many steps are made before links that are off are left out; then before and between looking again which those
+// are.
+constexpr int kFirstSteps = 2;
+constexpr int kSearchRounds = 3;
+constexpr int kSearchSteps = 3;
+
+// Blocks in the factor from which on a step is dear: then one start must do.
+constexpr std::size_t kDear = 100'000;
+
+// From this round of deciding on, links only leave, so that deciding ends.
+constexpr int kRoundsBothWays = 10;
+
+// Solving ends with a step that lowers the cost by less: it moves nothing by as much as a thousandth of its standard
+// deviation, or, while the solution is searched for, a fifth.
+constexpr double kTolerance = 1e-6;
+constexpr double kSearchTolerance = 1e-2;
+
+// Poses at which the links that are always believed cost less are those of the chain.
+constexpr double kChained = 1e-3;
+
+/// The part of the cost of the links that are always believed.
+double believed_cost(const GraphSolver& solver) {
+  double sum = 0.0;
+  for (const Link& link : solver.links()) {
+    if (!link.switchable) sum += solver.squared_error(link);
+  }
+  return 0.5 * sum;
+}
+
+/// The poses that follow from the links that are always believed alone: each node where the most certain of its links
+/// to earlier nodes has it.
+std::vector<Pose2> chained_poses(const GraphSolver& solver) {
+  std::vector<Pose2> poses = solver.poses();
+  std::vector<const Link*> best(poses.size(), nullptr);
+  const auto certainty = [](const Link& link) { return std::abs(link.W.determinant()); };
+  for (const Link& link : solver.links()) {
+    const Link*& chosen = best[std::max(link.i, link.j)];
+    if (!link.switchable && (chosen == nullptr || certainty(link) > certainty(*chosen))) chosen = &link;
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (solver.is_held(k) || best[k] == nullptr) continue;
+    const Link& link = *best[k];
+    poses[k] = k == link.j ? poses[link.i] * link.T_i_j : poses[link.j] * inverse(link.T_i_j);
+  }
+  return poses;
+}
+
+}  // namespace
+
+double robust_cost(const GraphSolver& solver) {
+  double sum = 0.0;
+  for (const Link& link : solver.links()) {
+    const double chi2 = solver.squared_error(link);
+    sum += link.switchable ? chi2 * solver.best_switch(chi2) : chi2;
+  }
+  return 0.5 * sum;
+}
+
+void Search::run(bool decides) {
+  const bool surprised = is_surprised();
+  if (surprised) switch_all_on();
+  if (!decides) {
+    solve_switches(0.0, kTolerance, max_iterations_, max_iterations_);
+    return;
+  }
+  if (surprised) find_best_start();
+  decide();
+}
+
+/// Whether a link that was on is far off at the poses as they are.
+bool Search::is_surprised() const {
+  const double agreeing_switch = solver_.best_switch(kAgreement);
+  return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
+    return link.switchable && link.s > agreeing_switch && solver_.squared_error(link) > kSurprise;
+  });
+}
+
+void Search::switch_all_on() {
+  for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
+}
+
+/// From the poses as they are, and from those of the chain alone, which false links have not bent yet; then once
+/// more from the better ones, without the links that are off there, so that those in doubt get a second chance.
+void Search::find_best_start() {
+  std::vector<Pose2> best = solver_.poses();
+  double least = robust_cost(solver_);
+  const auto try_from = [&](std::vector<Pose2> start, double least_switch) {
+    solver_.set_poses(std::move(start));
+    switch_all_on();
+    solve_switches(least_switch, kSearchTolerance, kSearchSteps, kSearchRounds);
+    if (const double reached = robust_cost(solver_); reached < least) {
+      least = reached;
+      best = solver_.poses();
+    }
+  };
+  std::vector<Pose2> chain = chained_poses(solver_);
+  const bool is_chain = believed_cost(solver_) < kChained;
+  try_from(best, 0.0);
+  if (!is_chain && !is_dear_) try_from(std::move(chain), 0.0);
+  try_from(best, kOff);
+  solver_.set_poses(std::move(best));
+}
+
+/// With the links whose best switch is at least this, then with those that are not off.
+void Search::solve_switches(double least_switch, double tolerance, int most_steps, int most_rounds) {
+  std::vector<bool> on;
+  for (const Link& link : solver_.links()) {
+    on.push_back(!link.switchable || solver_.best_switch(solver_.squared_error(link)) >= least_switch);
+  }
+  solver_.use(on);
+  is_dear_ = solver_.fill() >= kDear;
+  converge(tolerance, kFirstSteps);
+  const auto is_not_off = [this](const Link&, double chi2, int) { return solver_.best_switch(chi2) >= kOff; };
+  settle(is_not_off, tolerance, most_steps, most_rounds);
+}
+
+/// Leaves out the links that disagree, until those that are left agree with each other.
+void Search::decide() {
+  const double agreeing_switch = solver_.best_switch(kAgreement);
+  const auto agrees = [agreeing_switch](const Link& link, double chi2, int round) {
+    if (round == 0 && link.s > agreeing_switch) return chi2 <= kSurprise;  // may pull before it is judged
+    return chi2 <= kAgreement && (round < kRoundsBothWays || link.on);
+  };
+  settle(agrees, kTolerance, max_iterations_, max_iterations_);
+}
+
+/// Solves with the links that the rule chooses by their squared errors, again and again until they stay the same.
+template <typename Rule>
+void Search::settle(const Rule& takes_part, double tolerance, int most_steps, int most_rounds) {
+  for (int round = 0; round < most_rounds; ++round) {
+    std::vector<bool> on;
+    for (std::size_t k = 0; k < solver_.links().size(); ++k) {
+      const Link& link = solver_.links()[k];
+      const double chi2 = solver_.squared_error(link);
+      on.push_back(!link.switchable || takes_part(link, chi2, round));
+      if (link.switchable) solver_.set_switch(k, solver_.best_switch(chi2));
+    }
+    if (!solver_.use(on) && round > 0) return;
+    converge(tolerance, most_steps);
+  }
+}
+
+void Search::converge(double tolerance, int most_steps) {
+  progress_ = GraphSolver::Progress::kMoved;
+  for (int k = 0; k < most_steps && iterations_ < max_iterations_; ++k) {
+    progress_ = solver_.step(tolerance);
+    ++iterations_;
+    if (progress_ != GraphSolver::Progress::kMoved) return;
+  }
+}
+
+}  // namespace oort
