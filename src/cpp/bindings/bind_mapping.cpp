@@ -46,6 +46,17 @@ py::dict dict_of(const ClosureCounts& counts) {
   return dict;
 }
 
+py::dict dict_of(const RefinementCounts& counts) {
+  py::dict dict;
+  dict["rounds"] = counts.rounds;
+  dict["links"] = dict_of(counts.links);
+  dict["misfit_before"] = counts.misfit_before;
+  dict["misfit"] = counts.misfit;
+  dict["kept"] = counts.kept;
+  dict["moved"] = counts.moved;
+  return dict;
+}
+
 py::dict dict_of(const MapperStatistics& statistics) {
   py::dict dict;
   dict["scans"] = statistics.scans;
@@ -58,6 +69,7 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["docks"] = dict_of(statistics.docks);
   dict["solves"] = statistics.solves;
   dict["solves_cut_short"] = statistics.solves_cut_short;
+  dict["refinement"] = dict_of(statistics.refinement);
   return dict;
 }
 

@@ -9,6 +9,7 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/mapping/map_check.hpp"
+#include "oort/mapping/refinement.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/parameters/table.hpp"
 
@@ -119,6 +120,7 @@ void Mapper::resume_from_paused() {
 
 void Mapper::finish() {
   if (pending_closures_ > 0 || !map_.graph.switchable_edges.empty()) solve_anew(kFinalIterations);
+  if (parameters_.final_refinement) statistics_.refinement = refine(map_);
 }
 
 void Mapper::set_map(Map map) {

@@ -56,7 +56,8 @@ class Mapper {
   /// The next scan makes a node whose link to the last one is very uncertain.
   void resume_from_paused();
 
-  /// Solves with all that is known; the map is at its final solution afterwards.
+  /// Solves with all that is known, then lets scans that saw the same surfaces agree (refinement.hpp). The map is at its
+  /// final solution afterwards; mapping may go on.
   void finish();
 
   const Map& map() const { return map_; }

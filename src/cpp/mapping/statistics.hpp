@@ -14,6 +14,16 @@ struct ClosureCounts {
   std::map<std::string, std::uint64_t> refused;  ///< by reason
 };
 
+/// What the last refinement did (refinement.hpp).
+struct RefinementCounts {
+  std::uint64_t rounds = 0;
+  ClosureCounts links;         ///< between scans, in the last round
+  double misfit_before = 0.0;  ///< root mean square distance between the surfaces that scans have in common [m]
+  double misfit = 0.0;         ///< the same afterwards [m]
+  bool kept = false;           ///< whether the map was changed: only if scans agree better than before
+  double moved = 0.0;          ///< root mean square of how far nodes were moved [m]
+};
+
 /// Counts since the mapper was made.
 struct MapperStatistics {
   std::uint64_t scans = 0;
@@ -26,6 +36,7 @@ struct MapperStatistics {
   ClosureCounts docks;
   std::uint64_t solves = 0;
   std::uint64_t solves_cut_short = 0;  ///< that ended before they converged
+  RefinementCounts refinement;
 };
 
 }  // namespace oort

@@ -245,6 +245,7 @@ struct Parameters {
   double angular_update;
   int min_pointcloud_size;
   double switchable_constraint_scale;
+  bool final_refinement;
   OutputMapParameters output_map;
   IncrementalGraphBuilderParameters incremental_graph_builder;
   LoopClosureGraphBuilderParameters loop_closure_graph_builder;
