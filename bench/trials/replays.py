@@ -38,6 +38,10 @@ class Replayed:
     """(n,) of CPU that each scan took: what else the machine does counts for nothing"""
     closes: np.ndarray[Any, np.dtype[np.bool_]]
     """(n,) whether the scan tried loop closures or solved the graph"""
+    solving: Array
+    """(n,) of those seconds, what the solver took"""
+    states: tuple[str, ...]
+    """(n,) how well the place was known, as it was told right after each scan"""
 
 
 def replay(recording: Recording, parameters: Parameters, events: Sequence[Event] = ()) -> Replayed:
@@ -48,8 +52,10 @@ def replay(recording: Recording, parameters: Parameters, events: Sequence[Event]
     schedule = TimedSchedule(events, lambda _, event: session.call(event.call, event.args))
     then: list[tuple[float, float, float]] = []
     closes: list[bool] = []
+    solving: list[float] = []
+    states: list[str] = []
     times: list[float] = []
-    work = (0, 0)
+    solved = 0.0
     session.start()
     for scan in recording.scans():
         schedule.maps(scan)
@@ -57,10 +63,12 @@ def replay(recording: Recording, parameters: Parameters, events: Sequence[Event]
         result = session.add_scan(scan)
         watch.scan_seconds.append(time.thread_time() - started)
         recorder.add(scan.stamp, scan.odometry, result)
-        before = work
-        if result is not None and result.outcome == "node":  # only a node closes loops, and asking takes its time
-            work = _work(session.mapper.statistics)
-        closes.append(work != before)
+        closes.append(result is not None and (result.tried_closures or result.solved))
+        states.append("" if result is None else result.tracking)
+        before = solved
+        if result is not None and result.solved:
+            solved = session.mapper.work_seconds["solving"]
+        solving.append(solved - before)
         then.append(session.mapper.sensor_pose if session.mapper.has_pose else (math.nan,) * 3)
         times.append(scan.time)
     schedule.finish(math.inf)
@@ -72,11 +80,9 @@ def replay(recording: Recording, parameters: Parameters, events: Sequence[Event]
         compose(np.array(then), T_sensor_base),
         np.array(watch.scan_seconds),
         np.array(closes),
+        np.array(solving),
+        tuple(states),
     )
-
-
-def _work(statistics: dict[str, Any]) -> tuple[int, int]:
-    return statistics["loops"]["tried"], statistics["solves"]
 
 
 def cost(replayed: Replayed) -> dict[str, float]:

@@ -32,6 +32,15 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   return params;
 }
 
+// Odometry and match contradict each other beyond this squared distance: once in 10^5 times by chance (chi-square of 3
+// degrees of freedom).
+constexpr double kContradiction = 25.9;
+
+/// Next to nothing is known, yet a link of it is one that submaps may be drawn over (Chains).
+Eigen::Matrix3d diffuse_covariance() {
+  return Eigen::Vector3d(0.2, 0.2, 0.2).asDiagonal();  // 0.45 m and 0.45 rad
+}
+
 OdometryModel odometry_model(const OdometryNoiseParameters& p) {
   return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
           p.rotation_per_radian,   p.translation_floor,      p.rotation_floor};
@@ -64,13 +73,25 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   return tracked;
 }
 
+bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
+  return scan.usable && scan.hit_fraction >= parameters_.frsm_matcher.match_filtering.min_accept_score;
+}
+
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
-                                        const TrackedScan& node) const {
+                                        const TrackedScan& node, bool odometry_is_linked) const {
   MatchLink link;
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
   link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
-  link.covariance = match_covariance(node, T_local_anchor.theta, odometry, link.T_anchor_node.translation().norm());
+  link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
+                                     link.T_anchor_node.translation().norm());
+  if (motion_model_ && is_placed(node)) {
+    const Pose2& seen = link.T_anchor_node;
+    const Pose2& driven = T_anchor_node_odometry;
+    link.contradicts_odometry =
+        contradicts(node, T_local_anchor.theta, odometry,
+                    {seen.x - driven.x, seen.y - driven.y, wrap_angle(seen.theta - driven.theta)});
+  }
   return link;
 }
 
@@ -103,13 +124,12 @@ Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_befo
 }
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& node, double heading,
-                                                          const Eigen::Matrix3d& odometry, double distance) const {
+                                                          const Eigen::Matrix3d& others, double distance) const {
   const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
   Eigen::Matrix3d covariance;
   if (motion_model_) {
     // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
-    const Eigen::Matrix3d match = rotate_covariance(node.information, -heading) / (scale * scale);
-    covariance = (match + odometry.inverse()).inverse();
+    covariance = (match_information(node, heading) + others.inverse()).inverse();
     const double heading_error = parameters_.frsm_matcher.heading_error_per_meter * distance;
     covariance(2, 2) += heading_error * heading_error;
   } else {
@@ -119,6 +139,20 @@ Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& nod
     covariance.bottomLeftCorner<1, 2>().setZero();
   }
   return 0.5 * (covariance + covariance.transpose());
+}
+
+// e^T (O + M)^-1 e for odometry's covariance O and the match's M, which may be infinite along what the match leaves
+// open: (O + M)^-1 = I - I (I + O^-1)^-1 I with the match's information I.
+bool IncrementalGraphBuilder::contradicts(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry,
+                                          const Eigen::Vector3d& difference) const {
+  const Eigen::Matrix3d match = match_information(node, heading);
+  const Eigen::Matrix3d both = match - match * (match + odometry.inverse()).inverse() * match;
+  return difference.dot(both * difference) > kContradiction;
+}
+
+Eigen::Matrix3d IncrementalGraphBuilder::match_information(const TrackedScan& node, double heading) const {
+  const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
+  return rotate_covariance(node.information, -heading) / (scale * scale);
 }
 
 }  // namespace oort
