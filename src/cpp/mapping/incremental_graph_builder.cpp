@@ -36,6 +36,9 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
 // degrees of freedom).
 constexpr double kContradiction = 25.9;
 
+// How much less certain odometry then is [m and rad]: far less than what a match sees, more than what it does not.
+constexpr double kDoubt = 0.25;
+
 /// Next to nothing is known, yet a link of it is one that submaps may be drawn over (Chains).
 Eigen::Matrix3d diffuse_covariance() {
   return Eigen::Vector3d(0.2, 0.2, 0.2).asDiagonal();  // 0.45 m and 0.45 rad
@@ -85,13 +88,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
                                      link.T_anchor_node.translation().norm());
-  if (motion_model_ && is_placed(node)) {
-    const Pose2& seen = link.T_anchor_node;
-    const Pose2& driven = T_anchor_node_odometry;
-    link.contradicts_odometry =
-        contradicts(node, T_local_anchor.theta, odometry,
-                    {seen.x - driven.x, seen.y - driven.y, wrap_angle(seen.theta - driven.theta)});
-  }
+  if (motion_model_ && is_placed(node)) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
   return link;
 }
 
@@ -141,13 +138,20 @@ Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& nod
   return 0.5 * (covariance + covariance.transpose());
 }
 
-// e^T (O + M)^-1 e for odometry's covariance O and the match's M, which may be infinite along what the match leaves
-// open: (O + M)^-1 = I - I (I + O^-1)^-1 I with the match's information I.
-bool IncrementalGraphBuilder::contradicts(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry,
-                                          const Eigen::Vector3d& difference) const {
+// The match is that of a score with odometry as its prior: it differs from odometry by less than odometry errs, and not
+// at all along what it does not see. If it does not, another guess than odometry's was followed (frsm::Tracker).
+void IncrementalGraphBuilder::compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry,
+                                      MatchLink& link) const {
+  const Pose2& driven = T_anchor_node_odometry;
+  const Eigen::Vector3d difference(link.T_anchor_node.x - driven.x, link.T_anchor_node.y - driven.y,
+                                   wrap_angle(link.T_anchor_node.theta - driven.theta));
+  const Eigen::Matrix3d odometry = odometry_covariance(driven);
+  link.contradicts_odometry = difference.dot(odometry.inverse() * difference) > kContradiction;
   const Eigen::Matrix3d match = match_information(node, heading);
-  const Eigen::Matrix3d both = match - match * (match + odometry.inverse()).inverse() * match;
-  return difference.dot(both * difference) > kContradiction;
+  const Eigen::Matrix3d doubted = kDoubt * kDoubt * Eigen::Matrix3d::Identity() + odometry;
+  const Eigen::Vector3d towards_match = (match + doubted.inverse()).inverse() * match * difference;
+  link.T_anchor_node_weighed = {driven.x + towards_match.x(), driven.y + towards_match.y(),
+                                wrap_angle(driven.theta + towards_match.z())};
 }
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_information(const TrackedScan& node, double heading) const {

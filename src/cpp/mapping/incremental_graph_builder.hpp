@@ -28,9 +28,10 @@ struct MatchLink {
   Pose2 T_anchor_node;
   Eigen::Matrix3d covariance;  ///< along the axes of the anchor
   std::string refusal;         ///< why it is not to be believed; empty when it is
-  /// Whether match and odometry contradict each other by more than their covariances allow, so that neither is to be
-  /// believed. Never with the constant odometry model.
+  /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
+  /// constant odometry model.
   bool contradicts_odometry = false;
+  Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
 
 /// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
@@ -69,8 +70,7 @@ class IncrementalGraphBuilder {
   Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;
   Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& others,
                                    double distance) const;
-  bool contradicts(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry,
-                   const Eigen::Vector3d& difference) const;
+  void compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry, MatchLink& link) const;
   Eigen::Matrix3d match_information(const TrackedScan& node, double heading) const;
 
   IncrementalGraphBuilderParameters parameters_;

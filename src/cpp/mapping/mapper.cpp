@@ -250,7 +250,9 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   MatchLink match =
       incremental_.link(chains_.local_pose(anchor_.node), between(anchor_.T_odom_sensor, scan.T_odom_sensor),
                         scan.tracked, after_gap && incremental_.knows_odometry());
-  if (match.contradicts_odometry && !fresh_local_map_) return begin_contradicted_chain(scan, node, T_previous_node);
+  if (match.contradicts_odometry && !fresh_local_map_) {
+    return begin_contradicted_chain(scan, node, T_previous_node, match);
+  }
   if (fresh_local_map_) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
   const bool believed = match.refusal.empty();
   if (!believed || after_gap) {

@@ -124,7 +124,7 @@ class Mapper {
   void carry(LastScan& scan) const;
   std::uint64_t make_node(LastScan& scan);
   ChainStep link_to_chain(LastScan& scan, Node& node);
-  ChainStep begin_contradicted_chain(LastScan& scan, Node& node, const Pose2& T_previous_node);
+  ChainStep begin_contradicted_chain(LastScan& scan, Node& node, const Pose2& T_previous_node, const MatchLink& match);
   void link_loosely(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
                     const Node& node, double time);
   void close_loops();

@@ -35,13 +35,17 @@ bool Mapper::has_moved_unnoticed(const LastScan& scan) const {
 
 // Odometry slipped, or was carried, or the match is a chance one: which of them is not known. A new chain begins with
 // the scan, whose link is as wide as what they say is apart, so that closures decide where it belongs.
-Mapper::ChainStep Mapper::begin_contradicted_chain(LastScan& scan, Node& node, const Pose2& T_previous_node) {
+Mapper::ChainStep Mapper::begin_contradicted_chain(LastScan& scan, Node& node, const Pose2& T_previous_node,
+                                                   const MatchLink& match) {
   const Node& previous = map_.graph.nodes.back();
   const Pose2& T_local_previous = chains_.local_pose(previous.id);
-  const Pose2 T_previous_match = between(T_local_previous, scan.tracked.T_local_sensor);
-  const Pose2 apart = between(T_previous_node, T_previous_match);
+  const Pose2 T_local_anchor = chains_.local_pose(anchor_.node);
+  const auto from_previous = [&](const Pose2& T_anchor_node) {
+    return between(T_local_previous, T_local_anchor * T_anchor_node);
+  };
+  const Pose2 apart = between(T_previous_node, from_previous(match.T_anchor_node));
   const double hits = scan.tracked.hit_fraction;
-  const Pose2& chosen = hits >= kTellingHits ? T_previous_match : T_previous_node;
+  const Pose2 chosen = hits >= kTellingHits ? from_previous(match.T_anchor_node_weighed) : T_previous_node;
   const double xy = kContradictedVariance + apart.translation().squaredNorm();
   const double theta = kContradictedVarianceTheta + apart.theta * apart.theta;
   const Eigen::Matrix3d covariance = Eigen::Vector3d(xy, xy, theta).asDiagonal();

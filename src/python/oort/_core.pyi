@@ -3,7 +3,7 @@
 """The engine of Oort. Use it through the modules of the package oort."""
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, Literal, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -233,8 +233,8 @@ class ScanResult:
     def status(self) -> str:
         """What the scan matcher said; empty if it was not asked."""
     @property
-    def tracking(self) -> Literal["tracking", "uncertain", "lost"]:
-        """How well the sensor's place is known."""
+    def tracking(self) -> str:
+        """How well the sensor's place is known: tracking, uncertain or lost."""
     @property
     def tried_closures(self) -> bool:
         """Whether the scan brought work on loop closures."""
