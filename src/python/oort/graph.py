@@ -23,7 +23,7 @@ from oort.poses import between, compose, wrap_angle
 
 METHODS = {
     "decide": "closures have switches; those that disagree with the solution at 95 % are then left out",
-    "switch": "the optimum of the switches (Suenderhauf and Protzel 2012)",
+    "switch": "the optimum of the switches (Sünderhauf and Protzel 2012)",
     "plain": "least squares: all edges are believed",
 }
 _MAX_ITERATIONS = 200
