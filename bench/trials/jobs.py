@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One drive of a row: what it is, and what is measured of it."""
 
+import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -77,7 +78,8 @@ class Bench:
         return {}
 
     def _replay(self, drive: Drive, recipe: Recipe) -> Replayed:
-        return replay(recording_of(drive, recipe.name), self.parameters, events_of(drive))
+        mark = drive.fault_times[0] - 1e-6 if drive.fault_times is not None else math.inf
+        return replay(recording_of(drive, recipe.name), self.parameters, events_of(drive), mark)
 
     def _run_log(self, name: str, log: Log) -> Figures:
         folder = Path(os.environ.get("OORT_DATASETS", ROOT / "../shared/datasets")) / "radish"

@@ -96,6 +96,8 @@ def _summarise_faults(results: Results) -> Summary:
     return summary | {
         "never_lost": sum(value == 0.0 for value in _values(results, "lost_s")),
         "never_found": sum(value == 0.0 for value in _values(results, "recovered")),
+        "told": _ratio(results, "told_lost", ("scans_lost",)),
+        "told_wrongly": _ratio(results, "told_found", ("scans_found",)),
         "worst": _worst(results, "ate"),
         **_cost(results),
         **_closures(results),
@@ -115,8 +117,10 @@ def _cost(results: Results) -> Summary:
         "ms_p99": statistics.median(_values(results, "ms_p99")),
         "ms_p99_no_closing": statistics.median(_values(results, "ms_p99_no_closing")),
         "ms_max_no_closing": max(_values(results, "ms_max_no_closing")),
-        "over_5_ms_no_closing": sum(_values(results, "over_5_ms_no_closing")),
-        "scans_no_closing": sum(_values(results, "scans_no_closing")),
+        "ms_p99_no_solving": statistics.median(_values(results, "ms_p99_no_solving")),
+        "ms_max_no_solving": max(_values(results, "ms_max_no_solving")),
+        "over_5_ms_no_solving": sum(_values(results, "over_5_ms_no_solving")),
+        "scans": sum(_values(results, "scans")),
         "share_closing": _ratio(results, "seconds_closing", ("seconds_closing", "seconds_no_closing")),
         "memory_mb_most": max(_values(results, "memory_mb")),
     }

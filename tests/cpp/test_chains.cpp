@@ -164,6 +164,16 @@ TEST_F(SubmapCacheTest, FollowsANeighborhoodThatGrows) {
   expect_equal(*grown.get(map, young, 10), *cache(64).get(map, chains, 10));
 }
 
+TEST_F(SubmapCacheTest, MayBeDrawnPieceByPiece) {
+  SubmapCache pieces = cache(64);
+  int steps = 0;
+  while (pieces.draw(map, chains, 10, 3)) ++steps;
+  EXPECT_EQ(steps, 3);  // 7 scans
+  expect_equal(*pieces.get(map, chains, 10), *cache(64).get(map, chains, 10));
+  pieces.draw(map, chains, 14, 3);  // what is half drawn is finished when it is asked for
+  expect_equal(*pieces.get(map, chains, 14), *cache(64).get(map, chains, 14));
+}
+
 TEST_F(SubmapCacheTest, IsInTheFrameOfItsNode) {
   Map turned = map;
   Chains moved;

@@ -35,8 +35,8 @@ class LinkTest : public ::testing::Test {
   }
 
   /// The verdict where the match differs from what odometry says by `T_odometry_match`.
-  std::string refusal(const Pose2& T_odometry_match) {
-    return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node).refusal;
+  std::string refusal(const Pose2& T_odometry_match) const {
+    return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node, false).refusal;
   }
 
   /// Takes new parameters.
@@ -64,7 +64,7 @@ TEST_F(LinkTest, FollowsTheSensor) {
 
 TEST_F(LinkTest, MatchThatAgreesWithOdometryIsBelieved) {
   follow();
-  const MatchLink link = builder.link({}, motion, node);
+  const MatchLink link = builder.link({}, motion, node, false);
   EXPECT_EQ(link.refusal, "");
   EXPECT_DOUBLE_EQ(link.T_anchor_node.x, node.T_local_sensor.x);
   EXPECT_EQ(link.covariance, link.covariance.transpose());
@@ -122,9 +122,9 @@ TEST_F(LinkTest, WithoutAMatchTheReasonIsTheMatchersStatus) {
   follow();
   node = builder.track({}, 1.0, kStep);
   EXPECT_FALSE(node.usable);
-  EXPECT_EQ(builder.link({}, motion * kStep, node).refusal, "empty scan");
+  EXPECT_EQ(builder.link({}, motion * kStep, node, false).refusal, "empty scan");
   node = builder.track({{1.0, 0.0}, {1.0, 0.1}, {1.0, 0.2}}, 1.1, kStep);
-  EXPECT_EQ(builder.link({}, motion * kStep * kStep, node).refusal, "too few points");
+  EXPECT_EQ(builder.link({}, motion * kStep * kStep, node, false).refusal, "too few points");
 }
 
 TEST_F(LinkTest, CorrectionCountsForTheNextScan) {
@@ -168,6 +168,35 @@ TEST_F(LinkTest, MotionModelGrowsWithTheWay) {
   EXPECT_NEAR(turn(2, 2), std::pow(noise.rotation_per_radian, 2) + std::pow(noise.rotation_floor, 2), 1e-15);
 }
 
+TEST_F(LinkTest, OdometryFarOffAGoodMatchContradictsIt) {
+  const auto contradicts = [&](const Pose2& T_odometry_match) {
+    return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node, false).contradicts_odometry;
+  };
+  follow();
+  EXPECT_FALSE(contradicts({0.5, 0.0, 0.0}));  // the constant model does not know
+  set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
+  restart();
+  EXPECT_FALSE(contradicts({}));
+  const double sigma = std::sqrt(builder.odometry_covariance(motion)(0, 0));
+  EXPECT_FALSE(contradicts({2.0 * sigma, 0.0, 0.0}));
+  EXPECT_TRUE(contradicts({10.0 * sigma, 0.0, 0.0}));
+  EXPECT_TRUE(contradicts({0.0, -10.0 * sigma, 0.0}));
+  EXPECT_TRUE(contradicts({0.0, 0.0, 1.0}));
+  node.hit_fraction = filter.min_accept_score - 0.01;  // a poor match says nothing against odometry
+  EXPECT_FALSE(contradicts({10.0 * sigma, 0.0, 0.0}));
+}
+
+TEST_F(LinkTest, OdometryThatIsLinkedDoesNotCountTwice) {
+  set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
+  restart();
+  const Eigen::Matrix3d once = builder.link({}, motion, node, true).covariance.inverse();
+  const Eigen::Matrix3d both = builder.link({}, motion, node, false).covariance.inverse();
+  const Eigen::Matrix3d odometry = builder.odometry_covariance(motion).inverse();
+  // Up to what is added to the heading afterwards, the two differ by odometry's information.
+  EXPECT_NEAR((both - once)(0, 0), odometry(0, 0), 0.1 * odometry(0, 0));
+  EXPECT_NEAR((both - once)(1, 1), odometry(1, 1), 0.1 * odometry(1, 1));
+}
+
 /// Between two parallel walls without end nothing tells how far along one is.
 class CorridorTest : public LinkTest {
  protected:
@@ -179,7 +208,7 @@ TEST_F(CorridorTest, WhatTheMatchDoesNotSeeIsLeftToOdometry) {
   set_parameter(parameters, "incremental_graph_builder.odometry_noise.translation_floor", 0.14);  // far from sure
   builder = IncrementalGraphBuilder(parameters);
   follow({0.0, 0.0, 0.5});  // the corridor's axis is at -0.5 rad in the local frame
-  const MatchLink link = builder.link({}, motion, node);
+  const MatchLink link = builder.link({}, motion, node, false);
   EXPECT_EQ(link.refusal, "");
   const Eigen::Vector2d along(std::cos(0.5), -std::sin(0.5));
   const Eigen::Vector2d across(std::sin(0.5), std::cos(0.5));
@@ -191,11 +220,22 @@ TEST_F(CorridorTest, WhatTheMatchDoesNotSeeIsLeftToOdometry) {
   EXPECT_NEAR(along.dot((link.T_anchor_node.translation() - motion.translation())), 0.0, 0.01);
 }
 
+TEST_F(CorridorTest, OfAContradictionOdometryIsTakenForWhatTheMatchDoesNotSee) {
+  set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
+  builder = IncrementalGraphBuilder(parameters);
+  follow({0.0, 0.0, 0.0});
+  const Pose2 odometry = node.T_local_sensor * Pose2{1.0, 0.6, 0.0};  // 1 m more along the walls, 0.6 m across
+  const MatchLink link = builder.link({}, odometry, node, false);
+  EXPECT_TRUE(link.contradicts_odometry);
+  EXPECT_NEAR(link.T_anchor_node_weighed.x, odometry.x, 0.3);
+  EXPECT_NEAR(link.T_anchor_node_weighed.y, link.T_anchor_node.y, 0.1);
+}
+
 TEST_F(CorridorTest, CovarianceIsAlongTheAxesOfTheAnchor) {
   follow({0.0, 0.0, 0.0});
   const Pose2 T_local_anchor{0.0, 0.0, 0.5 * testing::kPi};
-  const MatchLink straight = builder.link({}, motion, node);
-  const MatchLink turned = builder.link(T_local_anchor, between(T_local_anchor, motion), node);
+  const MatchLink straight = builder.link({}, motion, node, false);
+  const MatchLink turned = builder.link(T_local_anchor, between(T_local_anchor, motion), node, false);
   EXPECT_NEAR(turned.covariance(1, 1), straight.covariance(0, 0), 1e-9);
   EXPECT_NEAR(turned.covariance(0, 0), straight.covariance(1, 1), 1e-9);
   EXPECT_GT(straight.covariance(0, 0), 5.0 * straight.covariance(1, 1));

@@ -60,9 +60,15 @@ class ClosureTest : public ::testing::Test {
     loop.candidate_search.closest_allowed_id_threshold_large = static_cast<int>(kQuery - kCandidate) + 1;
   }
 
+  std::vector<Closure> find_all() {
+    LoopClosureBuilder builder(parameters);
+    builder.look(map, chains, kQuery);
+    return builder.work_off(map, chains, counts, log);
+  }
+
   std::optional<Closure> find() {
     counts = {};
-    const std::vector<Closure> closures = LoopClosureBuilder(parameters).find(map, chains, kQuery, counts);
+    const std::vector<Closure> closures = find_all();
     EXPECT_EQ(counts.tried, 1u);
     EXPECT_EQ(counts.accepted, closures.size());
     return closures.empty() ? std::nullopt : std::make_optional(closures.front());
@@ -82,6 +88,7 @@ class ClosureTest : public ::testing::Test {
   LoopClosureGraphBuilderParameters& loop = parameters.loop_closure_graph_builder;
   MatchFilterParameters& filter = loop.frsm_matcher.match_filter;
   ClosureCounts counts;
+  ClosureLog log;
 };
 
 TEST_F(ClosureTest, FindsTheTruePlace) {
@@ -225,7 +232,7 @@ TEST_F(ClosureTest, EveryAttemptIsCountedOnce) {
   loop.candidate_search.closest_allowed_id_threshold_large = 1;
   loop.frsm_matcher.submap_min_neighborhood_size = 2;  // the first and last node of the chain have one neighbour
   filter.match_max_dist = filter.match_max_dist_high = 0.31;
-  const auto closures = LoopClosureBuilder(parameters).find(map, chains, kQuery, counts);
+  const auto closures = find_all();
   std::uint64_t refused = 0;
   for (const auto& [reason, count] : counts.refused) refused += count;
   EXPECT_EQ(counts.tried, 3u);

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from oort.errors import InputError
-from oort.export import write_picture
+from oort.export import write_closures_picture, write_picture
 
 CELLS = np.full((20, 40), -1, dtype=np.int8)
 CELLS[2:18, 2:38] = 0
@@ -82,3 +82,31 @@ def test_large_maps_shrink_but_keep_thin_walls(tmp_path: Path) -> None:
 def test_unusable_grids_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a cell holds 7"):
         write_picture(tmp_path / "map.png", np.full((2, 2), 7), 0.05, ORIGIN)
+
+
+def test_each_verdict_on_a_closure_has_a_colour_of_its_own(tmp_path: Path) -> None:
+    lines = {
+        name: [[[-0.8, y], [0.8, y]]] for name, y in (("accepted", 0.2), ("contradicted", 0.1), ("ambiguous", 0.0))
+    }
+    lines |= {f"reason_{k}": [[[-0.8, -0.05 * k], [0.8, -0.05 * k]]] for k in range(1, 6)}
+    for name in ("a.png", "b.png"):
+        write_closures_picture(tmp_path / name, CELLS, 0.05, ORIGIN, lines)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    with Image.open(tmp_path / "a.png") as image:
+        seen = np.asarray(image.convert("RGB"))
+    colours = {name: tuple(seen[pixel(0.0, line[0][0][1])].tolist()) for name, line in lines.items()}
+    assert len(set(colours.values())) == len(lines)
+    assert colours["accepted"] == (0, 150, 60)
+    assert colours["contradicted"] == (220, 40, 40)
+    legend = seen[20 * SCALE :]
+    for name, colour in colours.items():
+        assert (legend == colour).all(axis=2).any(), name
+
+
+def test_a_narrow_picture_has_room_for_a_long_legend(tmp_path: Path) -> None:
+    lines = {f"a_reason_with_a_long_name_{k}": [[[0.0, 0.0], [0.1, 0.1]]] for k in range(12)}
+    write_closures_picture(tmp_path / "map.png", np.zeros((400, 100), np.int8), 0.05, ORIGIN, lines)
+    with Image.open(tmp_path / "map.png") as image:
+        seen = np.asarray(image.convert("RGB"))
+    bottom = seen[-6:]
+    assert (bottom == 255).all()  # nothing is cut off

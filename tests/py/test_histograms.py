@@ -18,7 +18,10 @@ GOLDEN = ROOT / "tests/py/data/maps/format_1/home"
 
 
 def test_hits_are_counted_from_the_lower_limit_on() -> None:
-    counts = make_histograms(Map(), [0.0, 0.0499, 0.05, 0.949, 0.95, 1.0])["hits"]["scans"]
+    values = [0.0, 0.0499, 0.05, 0.949, 0.95, 1.0]
+    hits = make_histograms(Map(), values, values)["hits"]
+    counts = hits["scans"]
+    assert hits["refused"] == counts
     assert (counts[0], counts[1], counts[18], counts[19], sum(counts)) == (2, 1, 1, 2, 6)
 
 

@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The options and events of a replay, and going on with a map in a second drive."""
 
+import csv
 import json
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from oort import load_map
 from oort.export import write_picture
@@ -61,6 +64,32 @@ def test_until_stops_after_so_many_seconds(files: Path, tmp_path: Path) -> None:
     assert times[-1] == pytest.approx(START + 12.5)
     assert len(times) == 126
     assert report_of(tmp_path)["recorded_seconds"] == pytest.approx(12.5)
+
+
+def test_closures_tells_of_each_attempt(files: Path, tmp_path: Path) -> None:
+    assert run(files / "first.clf", tmp_path / "plain") == 0
+    assert run(files / "first.clf", tmp_path, "--closures") == 0
+    assert not (tmp_path / "plain/closures.csv").exists()
+    assert (tmp_path / "map.map_capnp").read_bytes() == (tmp_path / "plain/map.map_capnp").read_bytes()
+    with (tmp_path / "closures.csv").open(encoding="utf-8", newline="") as table:
+        rows = list(csv.DictReader(table))
+    told = Counter(row["verdict"] for row in rows)
+    report = report_of(tmp_path)
+    assert len(rows) == report["loops"]["tried"] > 0
+    refused = {reason: count for reason, count in report["loops"]["refused"].items() if count}
+    assert {reason: told[reason] for reason in set(told) - {"accepted", "contradicted"}} == refused
+    accepted = [row for row in rows if row["verdict"] in ("accepted", "contradicted")]
+    assert len(accepted) == report["loops"]["accepted"] > 0
+    edges = load_map(str(tmp_path / "map")).switchable_edges
+    switches = dict(zip(zip(edges["i"].tolist(), edges["j"].tolist(), strict=True), edges["switch"], strict=True))
+    for row in accepted:
+        switch = float(row["switch"])
+        assert switch == pytest.approx(switches[int(row["query"]), int(row["candidate"])], abs=1e-4)
+        assert (row["verdict"] == "accepted") == (switch >= 0.5)
+        assert 0.0 < float(row["hit_fraction"]) <= 1.0
+    with Image.open(tmp_path / "closures.png") as image:
+        colours = {colour for _, colour in image.convert("RGB").getcolors(1 << 20) or []}
+    assert (0, 150, 60) in colours  # the accepted
 
 
 def test_max_range_takes_away_returns(files: Path, tmp_path: Path) -> None:

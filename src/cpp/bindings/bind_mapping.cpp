@@ -57,6 +57,52 @@ py::dict dict_of(const RefinementCounts& counts) {
   return dict;
 }
 
+const char* name_of(TrackingState state) {
+  switch (state) {
+    case TrackingState::kTracking:
+      return "tracking";
+    case TrackingState::kUncertain:
+      return "uncertain";
+    case TrackingState::kLost:
+      return "lost";
+  }
+  return "";
+}
+
+py::dict dict_of(const TrackingCounts& counts) {
+  py::dict dict;
+  dict["tracking"] = counts.tracking;
+  dict["uncertain"] = counts.uncertain;
+  dict["lost"] = counts.lost;
+  dict["changes"] = counts.changes;
+  return dict;
+}
+
+py::dict dict_of(const SolvedCounts& counts) {
+  py::dict dict;
+  dict["kept"] = counts.kept;
+  dict["contradicted"] = counts.contradicted;
+  dict["came_back"] = counts.came_back;
+  return dict;
+}
+
+py::dict dict_of(const WorkSeconds& seconds) {
+  py::dict dict;
+  dict["tracking"] = seconds.tracking;
+  dict["candidates"] = seconds.candidates;
+  dict["matching"] = seconds.matching;
+  dict["solving"] = seconds.solving;
+  return dict;
+}
+
+py::list list_of(const ClosureLog& log) {
+  py::list list;
+  for (const ClosureAttempt& a : log.attempts()) {
+    list.append(py::make_tuple(a.query, a.candidate, a.reason, tuple_of(a.T_candidate_query), a.hit_fraction));
+  }
+  return list;
+}
+
 py::dict dict_of(const MapperStatistics& statistics) {
   py::dict dict;
   dict["scans"] = statistics.scans;
@@ -65,8 +111,11 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["nodes"] = statistics.nodes;
   dict["odometry_links"] = statistics.odometry_links;
   dict["match_refusals"] = py::cast(statistics.match_refusals);
+  dict["contradictions"] = statistics.contradictions;
+  dict["tracking"] = dict_of(statistics.tracking);
   dict["loops"] = dict_of(statistics.loops);
   dict["docks"] = dict_of(statistics.docks);
+  dict["solved"] = dict_of(statistics.solved);
   dict["solves"] = statistics.solves;
   dict["solves_cut_short"] = statistics.solves_cut_short;
   dict["refinement"] = dict_of(statistics.refinement);
@@ -118,7 +167,12 @@ void bind_scan_result(py::module_& m) {
           "T_node_sensor", [](const ScanResult& r) { return tuple_of(r.T_node_sensor); },
           "The sensor's pose (x, y, theta) seen from the node.")
       .def_readonly("hit_fraction", &ScanResult::hit_fraction, "Share of the returns that hit the local map.")
-      .def_readonly("status", &ScanResult::status, "What the scan matcher said; empty if it was not asked.");
+      .def_readonly("status", &ScanResult::status, "What the scan matcher said; empty if it was not asked.")
+      .def_property_readonly(
+          "tracking", [](const ScanResult& r) { return name_of(r.tracking); },
+          "How well the sensor's place is known: \"tracking\", \"uncertain\" or \"lost\".")
+      .def_readonly("tried_closures", &ScanResult::tried_closures, "Whether the scan brought work on loop closures.")
+      .def_readonly("solved", &ScanResult::solved, "Whether the graph was solved.");
 }
 
 }  // namespace
@@ -197,7 +251,15 @@ void bind_mapping(py::module_& m) {
       .def_property_readonly("locations", &locations_of, "(namespace, id, node id, T_node_location) of each place.")
       .def_property_readonly(
           "statistics", [](const Mapper& mapper) { return dict_of(mapper.statistics()); },
-          "Counts since the mapper was made.");
+          "Counts since the mapper was made.")
+      .def_property_readonly(
+          "work_seconds", [](const Mapper& mapper) { return dict_of(mapper.work_seconds()); },
+          "CPU seconds since the mapper was made, by kind of work; they differ from run to run.")
+      .def("keep_closure_attempts", &Mapper::keep_closure_attempts, py::arg("capacity"),
+           "Keeps the latest attempts to close loops, so many at most.")
+      .def_property_readonly(
+          "closure_attempts", [](const Mapper& mapper) { return list_of(mapper.closure_attempts()); },
+          "(query node, candidate node, reason of the refusal or \"\", T_candidate_query, hit fraction) of each kept.");
 }
 
 }  // namespace oort

@@ -35,6 +35,18 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   return params;
 }
 
+// Odometry and match contradict each other beyond this squared distance: once in 10^5 times by chance (chi-square of 3
+// degrees of freedom).
+constexpr double kContradiction = 25.9;
+
+// How much less certain odometry then is [m and rad]: far less than what a match sees, more than what it does not.
+constexpr double kDoubt = 0.25;
+
+/// Next to nothing is known, yet a link of it is one that submaps may be drawn over (Chains).
+Eigen::Matrix3d diffuse_covariance() {
+  return Eigen::Vector3d(0.2, 0.2, 0.2).asDiagonal();  // 0.45 m and 0.45 rad
+}
+
 OdometryModel odometry_model(const OdometryNoiseParameters& p) {
   return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
           p.rotation_per_radian,   p.translation_floor,      p.rotation_floor};
@@ -68,17 +80,19 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   return tracked;
 }
 
+bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
+  return scan.usable && scan.hit_fraction >= parameters_.frsm_matcher.match_filtering.min_accept_score;
+}
+
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
-                                        const TrackedScan& node) {
+                                        const TrackedScan& node, bool odometry_is_linked) const {
   MatchLink link;
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
-  const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
-  link.refusal = refusal(node, T_odometry_match);
-  link.covariance = match_covariance(node, T_local_anchor.theta, odometry, link.T_anchor_node.translation().norm());
-  if (link.refusal.empty() && !node.degenerate && node.hit_fraction >= kTellingHits) {
-    odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
-  }
+  link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
+  link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
+                                     link.T_anchor_node.translation().norm());
+  if (motion_model_ && is_placed(node)) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
   return link;
 }
 
@@ -111,13 +125,12 @@ Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_befo
 }
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& node, double heading,
-                                                          const Eigen::Matrix3d& odometry, double distance) const {
+                                                          const Eigen::Matrix3d& others, double distance) const {
   const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
   Eigen::Matrix3d covariance;
   if (motion_model_) {
     // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
-    const Eigen::Matrix3d match = rotate_covariance(node.information, -heading) / (scale * scale);
-    covariance = (match + odometry.inverse()).inverse();
+    covariance = (match_information(node, heading) + others.inverse()).inverse();
     const double heading_error = parameters_.frsm_matcher.heading_error_per_meter * distance;
     covariance(2, 2) += heading_error * heading_error;
   } else {
@@ -127,6 +140,27 @@ Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& nod
     covariance.bottomLeftCorner<1, 2>().setZero();
   }
   return 0.5 * (covariance + covariance.transpose());
+}
+
+// The match is that of a score with odometry as its prior: it differs from odometry by less than odometry errs, and not
+// at all along what it does not see. If it does not, another guess than odometry's was followed (frsm::Tracker).
+void IncrementalGraphBuilder::compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry,
+                                      MatchLink& link) const {
+  const Pose2& driven = T_anchor_node_odometry;
+  const Eigen::Vector3d difference(link.T_anchor_node.x - driven.x, link.T_anchor_node.y - driven.y,
+                                   wrap_angle(link.T_anchor_node.theta - driven.theta));
+  const Eigen::Matrix3d odometry = odometry_covariance(driven);
+  link.contradicts_odometry = difference.dot(odometry.inverse() * difference) > kContradiction;
+  const Eigen::Matrix3d match = match_information(node, heading);
+  const Eigen::Matrix3d doubted = kDoubt * kDoubt * Eigen::Matrix3d::Identity() + odometry;
+  const Eigen::Vector3d towards_match = (match + doubted.inverse()).inverse() * match * difference;
+  link.T_anchor_node_weighed = {driven.x + towards_match.x(), driven.y + towards_match.y(),
+                                wrap_angle(driven.theta + towards_match.z())};
+}
+
+Eigen::Matrix3d IncrementalGraphBuilder::match_information(const TrackedScan& node, double heading) const {
+  const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
+  return rotate_covariance(node.information, -heading) / (scale * scale);
 }
 
 }  // namespace oort

@@ -29,6 +29,10 @@ struct MatchLink {
   Pose2 T_anchor_node;
   Eigen::Matrix3d covariance;  ///< along the axes of the anchor
   std::string refusal;         ///< why it is not to be believed; empty when it is
+  /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
+  /// constant odometry model.
+  bool contradicts_odometry = false;
+  Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
 
 /// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
@@ -44,12 +48,20 @@ class IncrementalGraphBuilder {
   /// (since begin(): the identity).
   TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor);
 
-  /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor,
-  /// and learns from it how good the odometry is.
-  MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node);
+  /// Whether a scan's match says where it is: usable, and with hits enough to be believed.
+  bool is_placed(const TrackedScan& scan) const;
+
+  /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor.
+  /// The link's covariance is that of the match and of odometry together; `odometry_is_linked`: of the match alone, as
+  /// links by odometry lead from the anchor to the node already and would count twice.
+  MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node,
+                 bool odometry_is_linked) const;
 
   /// Overrules the matcher: the scan just tracked is at this pose of the local frame.
   void correct(const Pose2& T_local_sensor);
+
+  /// Whether odometry has a covariance of its own, that grows with the motion (odometry_model).
+  bool knows_odometry() const { return motion_model_; }
 
   /// Covariance of a motion by odometry alone, along the axes of the frame before.
   Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after) const;
@@ -57,8 +69,10 @@ class IncrementalGraphBuilder {
  private:
   std::string refusal(const TrackedScan& node, const Pose2& T_odometry_match) const;
   Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;
-  Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& odometry,
+  Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& others,
                                    double distance) const;
+  void compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry, MatchLink& link) const;
+  Eigen::Matrix3d match_information(const TrackedScan& node, double heading) const;
 
   IncrementalGraphBuilderParameters parameters_;
   bool motion_model_;  // odometry's covariance grows with the motion, else it is constant

@@ -26,6 +26,9 @@ constexpr double kScanSigma = 0.03;        // [m]
 constexpr double kScanSigmaTheta = 0.008;  // [rad]
 constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015};
 
+// Attempts that may wait for the next scans, so that none of these takes long: those of two nodes.
+constexpr std::size_t kMaxWaiting = 4;
+
 // A closure that moves the newest node by more waits for others that say the same.
 constexpr double kFar = 0.5;        // [m]
 constexpr double kFarAngle = 0.15;  // [rad]
@@ -44,6 +47,12 @@ LoopScale scan_scale(const LoopClosureGraphBuilderParameters& p) {
 
 bool is_wide(const SearchWindow& window) {
   return window.xy > kWideWindow;
+}
+
+/// Whether the node is among the first of a chain that has others before it: where the chain belongs is not known yet.
+bool is_seeking(const Chains& chains, std::uint64_t query) {
+  const std::uint64_t begin = chains.segment_begin(query);
+  return begin > 0 && query - begin < kWay.query_nodes;
 }
 
 std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) {
@@ -85,35 +94,67 @@ LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
       scan_matcher_(parameters, scan_scale(parameters_)),
       way_matcher_(parameters, kWay) {}
 
-std::vector<Closure> LoopClosureBuilder::find(const Map& map, const Chains& chains, std::uint64_t query,
-                                              ClosureCounts& counts) {
+void LoopClosureBuilder::look(const Map& map, const Chains& chains, std::uint64_t query) {
   const bool adaptive = parameters_.frsm_matcher.search_window_sigmas > 0.0;
   if (adaptive) {
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
   }
-  std::vector<Closure> closures;
   for (const std::uint64_t candidate : candidates(map, chains, query)) {
     const SearchWindow window = this->window(map, query, candidate);
-    if (adaptive && is_wide(window) && query % kWideStride != 0) continue;
-    ++counts.tried;
-    std::string reason;
-    const std::optional<Closure> closure = match(map, chains, query, candidate, window, reason);
-    if (!closure) {
-      ++counts.refused[reason];
-    } else if (!must_be_confirmed(map, *closure)) {
-      ++counts.accepted;
-      closures.push_back(*closure);
-    } else {
-      ++counts.refused[kUnconfirmed];  // until it is
-      for (const Closure& confirmed : confirmation_.add(map, *closure)) {
-        --counts.refused[kUnconfirmed];
-        ++counts.accepted;
-        closures.push_back(confirmed);
-      }
+    if (adaptive && is_wide(window) && !is_seeking(chains, query) && query % kWideStride != 0) continue;
+    waiting_.push_back({query, candidate, window});
+  }
+}
+
+std::vector<Closure> LoopClosureBuilder::work(const Map& map, const Chains& chains, ClosureCounts& counts,
+                                              ClosureLog& log) {
+  std::vector<Closure> closures;
+  while (!waiting_.empty()) {
+    const bool must_go_on = waiting_.size() > kMaxWaiting;
+    const Attempt attempt = waiting_.front();
+    if (!matcher_for(attempt).draw(map, chains, attempt.candidate)) {
+      waiting_.pop_front();
+      for (const Closure& closure : make(attempt, map, chains, counts, log)) closures.push_back(closure);
     }
+    if (!must_go_on) break;
   }
   return closures;
+}
+
+std::vector<Closure> LoopClosureBuilder::work_off(const Map& map, const Chains& chains, ClosureCounts& counts,
+                                                  ClosureLog& log) {
+  std::vector<Closure> closures;
+  while (!waiting_.empty()) {
+    for (const Closure& closure : work(map, chains, counts, log)) closures.push_back(closure);
+  }
+  return closures;
+}
+
+std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map& map, const Chains& chains,
+                                              ClosureCounts& counts, ClosureLog& log) {
+  LoopMatcher::Found found = match(map, chains, attempt);
+  const Closure closure{attempt.query, attempt.candidate, inverse(found.T_candidate_query),
+                        inverse_covariance(found.T_candidate_query, found.covariance), found.hit_fraction};
+  std::vector<Closure> believed;
+  if (found.refusal.empty()) {
+    if (must_be_confirmed(map, closure)) {
+      believed = confirmation_.add(map, closure);
+      if (believed.empty()) found.refusal = kUnconfirmed;  // until it is
+    } else {
+      believed = {closure};
+    }
+  }
+  ++counts.tried;
+  if (!found.refusal.empty()) ++counts.refused[found.refusal];
+  log.add({attempt.query, attempt.candidate, found.refusal, found.T_candidate_query, found.hit_fraction});
+  for (const Closure& accepted : believed) {
+    ++counts.accepted;
+    if (accepted.from == attempt.query && accepted.to == attempt.candidate) continue;
+    --counts.refused[kUnconfirmed];
+    log.accept(accepted.from, accepted.to);
+  }
+  return believed;
 }
 
 std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const Chains& chains,
@@ -181,29 +222,29 @@ SearchWindow LoopClosureBuilder::window(const Map& map, std::uint64_t query, std
   return window;
 }
 
-std::optional<Closure> LoopClosureBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
-                                                 std::uint64_t candidate, const SearchWindow& window,
-                                                 std::string& reason) {
+LoopMatcher& LoopClosureBuilder::matcher_for(const Attempt& attempt) {
+  return is_wide(attempt.window) && parameters_.frsm_matcher.search_window_sigmas > 0.0 ? way_matcher_ : scan_matcher_;
+}
+
+LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chains, const Attempt& attempt) {
   const FrsmLoopMatcherParameters& p = parameters_.frsm_matcher;
-  const std::optional<LoopMatcher::Found> found =
-      (is_wide(window) && p.search_window_sigmas > 0.0 ? way_matcher_ : scan_matcher_)
-          .find(map, chains, query, candidate, window, reason);
-  if (!found) return std::nullopt;
+  const auto [query, candidate, window] = attempt;
+  LoopMatcher::Found found = matcher_for(attempt).find(map, chains, query, candidate, window);
+  if (!found.refusal.empty()) return found;
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
-  const Pose2 moved = between(expected, found->T_candidate_query);
-  reason = refusal(p.match_filter, found->hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
-                   is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
-                   std::abs(expected.theta) >= p.match_filter.opposite_dir_threshold);
-  if (!reason.empty()) return std::nullopt;
+  const Pose2 moved = between(expected, found.T_candidate_query);
+  found.refusal =
+      refusal(p.match_filter, found.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
+              is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
+              std::abs(expected.theta) >= p.match_filter.opposite_dir_threshold);
+  if (!found.refusal.empty()) return found;
   const FacingMap facing(map, chains, candidate,
                          chains.neighborhood(candidate, static_cast<std::uint64_t>(
                                                             parameters_.candidate_search.submap_neighborhood_size)));
-  if (facing.agreement(surface_points(returns_of(map.clouds[query])), found->T_candidate_query) < p.min_facing_share) {
-    reason = "other_side";
-    return std::nullopt;
+  if (facing.agreement(surface_points(returns_of(map.clouds[query])), found.T_candidate_query) < p.min_facing_share) {
+    found.refusal = "other_side";
   }
-  return Closure{query, candidate, inverse(found->T_candidate_query),
-                 inverse_covariance(found->T_candidate_query, found->covariance), found->hit_fraction};
+  return found;
 }
 
 bool LoopClosureBuilder::must_be_confirmed(const Map& map, const Closure& closure) const {

@@ -3,8 +3,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <deque>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +12,7 @@
 #include "oort/mapping/chains.hpp"
 #include "oort/mapping/closure.hpp"
 #include "oort/mapping/closure_confirmation.hpp"
+#include "oort/mapping/closure_log.hpp"
 #include "oort/mapping/loop_matcher.hpp"
 #include "oort/mapping/map.hpp"
 #include "oort/mapping/statistics.hpp"
@@ -28,19 +29,34 @@ class LoopClosureBuilder {
  public:
   explicit LoopClosureBuilder(const Parameters& parameters);
 
-  /// The closures that are believed now that the newest node, `query`, is there. Counts every attempt.
-  std::vector<Closure> find(const Map& map, const Chains& chains, std::uint64_t query, ClosureCounts& counts);
+  /// Notes what is worth an attempt now that the newest node, `query`, is there.
+  void look(const Map& map, const Chains& chains, std::uint64_t query);
+
+  bool has_work() const { return !waiting_.empty(); }
+
+  /// Does the next piece of what was noted: draws some scans of a submap, or makes one attempt, so that no scan has to
+  /// wait long; more only if too many attempts wait. Returns the closures that are believed with it.
+  std::vector<Closure> work(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log);
+
+  /// Does all of what was noted.
+  std::vector<Closure> work_off(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log);
 
   /// Nodes worth matching against, nearest first: at most knearest_neighbors, none within the neighbourhood of another
-  /// or of the query. find() sets how uncertain each is.
+  /// or of the query. look() sets how uncertain each is.
   std::vector<std::uint64_t> candidates(const Map& map, const Chains& chains, std::uint64_t query) const;
 
  private:
   std::vector<std::uint64_t> nearest(const std::vector<std::pair<double, std::uint64_t>>& by_distance,
                                      const Chains& chains, std::uint64_t query, int id_threshold) const;
-  /// Sets `reason` when there is no closure.
-  std::optional<Closure> match(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
-                               const SearchWindow& window, std::string& reason);
+  struct Attempt {
+    std::uint64_t query;
+    std::uint64_t candidate;
+    SearchWindow window;
+  };
+  LoopMatcher& matcher_for(const Attempt& attempt);
+  std::vector<Closure> make(const Attempt& attempt, const Map& map, const Chains& chains, ClosureCounts& counts,
+                            ClosureLog& log);
+  LoopMatcher::Found match(const Map& map, const Chains& chains, const Attempt& attempt);
   SearchWindow window(const Map& map, std::uint64_t query, std::uint64_t candidate) const;
   bool must_be_confirmed(const Map& map, const Closure& closure) const;
 
@@ -50,6 +66,7 @@ class LoopClosureBuilder {
   RelativeUncertainty uncertainty_;
   std::vector<std::optional<Eigen::Matrix3d>> from_query_;  // covariance of T_query_node by node, along the map's axes
   ClosureConfirmation confirmation_;
+  std::deque<Attempt> waiting_;  // oldest first
 };
 
 }  // namespace oort

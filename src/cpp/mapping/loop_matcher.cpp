@@ -17,6 +17,9 @@ constexpr std::size_t kSubmapCacheBytes = std::size_t{128} << 20;
 constexpr double kFineCells = 3.0;
 constexpr double kFineThetaSteps = 4.0;
 
+// Of a submap, in one piece of work: about as dear as a match.
+constexpr std::uint64_t kScansDrawnAtOnce = 8;
+
 frsm::Points thinned(const frsm::Points& points, std::size_t count) {
   if (count == 0 || points.size() <= count) return points;
   frsm::Points some;
@@ -39,40 +42,40 @@ LoopMatcher::LoopMatcher(const Parameters& parameters, const LoopScale& scale)
       submaps_(scale.submap_nodes, kSubmapCacheBytes, table_, frsm::ContourParams::urg()),
       matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale)) {}
 
-std::optional<LoopMatcher::Found> LoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
-                                                    std::uint64_t candidate, const SearchWindow& window,
-                                                    std::string& reason) {
-  if (chains.neighborhood(candidate, scale_.submap_nodes).size() <=
-      static_cast<std::size_t>(parameters_.submap_min_neighborhood_size)) {
-    reason = "small_submap";
-    return std::nullopt;
-  }
+bool LoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) const {
+  return chains.neighborhood(candidate, scale_.submap_nodes).size() <=
+         static_cast<std::size_t>(parameters_.submap_min_neighborhood_size);
+}
+
+bool LoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate) {
+  return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, kScansDrawnAtOnce);
+}
+
+LoopMatcher::Found LoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
+                                     const SearchWindow& window) {
+  const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
+  const auto refused = [](const std::string& reason, const Pose2& pose, double hits) {
+    return Found{pose, Eigen::Matrix3d::Zero(), hits, reason};
+  };
+  if (is_small(chains, candidate)) return refused("small_submap", expected, 0.0);
   const frsm::Points points =
       thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes)), scale_.fine_points);
   const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
-  const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const frsm::Prior prior{to_frsm(expected), window.covariance};
   const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,
                                            {window.xy, window.xy, window.theta}, &prior);
-  if (rough.hits == 0)
-    reason = "no_overlap";
-  else if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
-    reason = "rough_hits";
-  else if (rough.saturated)
-    reason = "window_border";
-  else if (rough.ambiguity > scale_.max_ambiguity)
-    reason = "ambiguous";
-  if (!reason.empty()) return std::nullopt;
+  if (rough.hits == 0) return refused("no_overlap", expected, 0.0);
+  const Pose2 roughly = from_frsm(rough.pose);
+  if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
+    return refused("rough_hits", roughly, rough.hit_fraction);
+  if (rough.saturated) return refused("window_border", roughly, rough.hit_fraction);
+  if (rough.ambiguity > scale_.max_ambiguity) return refused("ambiguous", roughly, rough.hit_fraction);
   const double fine_xy = kFineCells * table_.cell;
   const frsm::Match fine = matcher_.match(*submap, points, rough.pose,
                                           {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
-  if (fine.hit_fraction < parameters_.fine_match_hitpct_threshold) {
-    reason = "fine_hits";
-    return std::nullopt;
-  }
   const Eigen::Vector3d bend(scale_.sigma_xy, scale_.sigma_xy, scale_.sigma_theta);
-  return Found{from_frsm(fine.pose), fine.covariance + Eigen::Matrix3d(bend.cwiseAbs2().asDiagonal()),
-               fine.hit_fraction};
+  return {from_frsm(fine.pose), fine.covariance + Eigen::Matrix3d(bend.cwiseAbs2().asDiagonal()), fine.hit_fraction,
+          fine.hit_fraction < parameters_.fine_match_hitpct_threshold ? "fine_hits" : ""};
 }
 
 }  // namespace oort

@@ -39,16 +39,22 @@ class LoopMatcher {
   LoopMatcher(const Parameters& parameters, const LoopScale& scale);
 
   struct Found {
-    Pose2 T_candidate_query;
+    Pose2 T_candidate_query;     ///< the best there is, believed or not
     Eigen::Matrix3d covariance;  ///< along the axes of the candidate
     double hit_fraction = 0.0;
+    std::string refusal;  ///< why it is not to be believed; empty when it is
   };
 
-  /// Sets `reason` when the query is not found.
-  std::optional<Found> find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
-                            const SearchWindow& window, std::string& reason);
+  Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
+             const SearchWindow& window);
+
+  /// Draws the next scans of the candidate's submap, so that find() need not draw them all at once. False if there was
+  /// nothing left to draw.
+  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate);
 
  private:
+  bool is_small(const Chains& chains, std::uint64_t candidate) const;
+
   FrsmLoopMatcherParameters parameters_;
   LoopScale scale_;
   frsm::TableParams table_;

@@ -42,6 +42,10 @@ void check_reach(const Pose2& pose, const std::string& what) {
   }
 }
 
+Eigen::Matrix3d inflated_covariance(double scale) {
+  return kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
+}
+
 Parameters checked(const Parameters& parameters) {
   check_parameters(parameters);
   return parameters;
@@ -73,21 +77,30 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
   now.T_odom_base = T_odom_base;
   now.T_odom_sensor = T_odom_base * T_base_sensor_;
   ++statistics_.scans;
+  const std::uint64_t solves_before = statistics_.solves;
 
   const bool has_points = count_returns(now.cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
-  const bool due = has_points && is_due(T_odom_base);
+  bool due = has_points && is_due(T_odom_base);
   if (has_points && (due || parameters_.incremental_graph_builder.match_every_scan)) {
     track(now);
   } else {
     carry(now);
   }
   if (!has_points) ++statistics_.scans_too_small;
+  now.missed = now.missed || !has_points;
+  due = due || has_moved_unnoticed(now);
 
-  std::optional<std::uint64_t> node;
-  if (due) node = make_node(now);
+  if (due) make_node(now);
   last_scan_ = std::move(now);
-  if (node) close_loops(*node);
-  return result(*last_scan_, node ? ScanOutcome::kNode : has_points ? ScanOutcome::kCarried : ScanOutcome::kSkipped);
+  const bool tried_closures = loops_.has_work();
+  close_loops();
+  count_tracking(tracking_.update(last_scan_->missed));
+  ScanResult told = result(*last_scan_, due          ? ScanOutcome::kNode
+                                        : has_points ? ScanOutcome::kCarried
+                                                     : ScanOutcome::kSkipped);
+  told.tried_closures = tried_closures;
+  told.solved = statistics_.solves > solves_before;
+  return told;
 }
 
 bool Mapper::notify_docked() {
@@ -100,7 +113,11 @@ bool Mapper::notify_docked() {
     if (!last_scan_->was_tracked) track(*last_scan_);
     query = make_node(*last_scan_);
   }
-  const std::optional<Closure> closure = docks_.find(map_, chains_, query, statistics_.docks);
+  std::optional<Closure> closure;
+  {
+    const WorkClock clock(work_seconds_.matching);
+    closure = docks_.find(map_, chains_, query, statistics_.docks);
+  }
   if (!closure) return false;
   add_closure(*closure);
   solve_anew(kIterationsWhileMapping);
@@ -119,6 +136,10 @@ void Mapper::resume_from_paused() {
 }
 
 void Mapper::finish() {
+  {
+    const WorkClock clock(work_seconds_.matching);
+    add_closures(loops_.work_off(map_, chains_, statistics_.loops, closure_log_));
+  }
   if (pending_closures_ > 0 || !map_.graph.switchable_edges.empty()) solve_anew(kFinalIterations);
   if (parameters_.final_refinement) statistics_.refinement = refine(map_);
 }
@@ -136,6 +157,8 @@ void Mapper::set_map(Map map) {
   last_scan_.reset();
   pending_closures_ = 0;
   nodes_at_last_solve_ = map_.graph.nodes.size();
+  is_on_.clear();
+  look_at_solution();
 }
 
 bool Mapper::is_due(const Pose2& T_odom_base) const {
@@ -145,8 +168,10 @@ bool Mapper::is_due(const Pose2& T_odom_base) const {
 }
 
 void Mapper::track(LastScan& scan) {
+  const WorkClock clock(work_seconds_.tracking);
+  const bool is_first = next_link_ != NextLink::kChain;
   Pose2 T_previous_sensor = between(T_odom_sensor_tracked_, scan.T_odom_sensor);
-  if (next_link_ != NextLink::kChain) {  // the first scan of a segment has nothing to be matched with
+  if (is_first) {  // the first scan of a segment has nothing to be matched with
     Pose2 T_local_start;
     if (next_link_ == NextLink::kPaused) T_local_start = T_local_sensor_tracked_ * T_previous_sensor;
     if (next_link_ == NextLink::kSession) T_local_start = T_map_start_;
@@ -156,6 +181,7 @@ void Mapper::track(LastScan& scan) {
   }
   scan.tracked = incremental_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor);
   scan.was_tracked = true;
+  scan.missed = !is_first && !incremental_.is_placed(scan.tracked);
   if (scan.tracked.restarted) fresh_local_map_ = true;
   T_odom_sensor_tracked_ = scan.T_odom_sensor;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
@@ -175,21 +201,20 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
     step = link_to_chain(scan, node);
   } else {
     const FrsmMatcherParameters& p = parameters_.incremental_graph_builder.frsm_matcher;
-    const double scale = p.scanmatch_cov_scale;
-    map_.incremental_results.push_back({node.id, node.id, scan.tracked.T_local_sensor,
-                                        kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity(), Pose2{},
-                                        0.0});
+    map_.incremental_results.push_back(
+        {node.id, node.id, scan.tracked.T_local_sensor, inflated_covariance(p.scanmatch_cov_scale), Pose2{}, 0.0});
     if (next_link_ == NextLink::kPaused) {
       const Node& last = map_.graph.nodes.back();
       const Pose2 T_last_node = between(T_odom_sensor_node_, scan.T_odom_sensor);
       node.pose = last.pose * T_last_node;
-      link_loosely(last.id, T_last_node, p.inflate_scanmatch_cov_scale, node, scan.cloud.time);
+      link_loosely(last.id, T_last_node, inflated_covariance(p.inflate_scanmatch_cov_scale), node, scan.cloud.time);
     } else if (next_link_ == NextLink::kSession) {
       node.pose = T_map_start_;
       const std::uint64_t target = nearest_node(node.pose.translation());
-      link_loosely(target, between(map_.graph.nodes[target].pose, node.pose), p.resume_scanmatch_cov_scale, node,
-                   scan.cloud.time);
+      link_loosely(target, between(map_.graph.nodes[target].pose, node.pose),
+                   inflated_covariance(p.resume_scanmatch_cov_scale), node, scan.cloud.time);
     }
+    if (next_link_ != NextLink::kNone) tracking_.hang_loosely(node.id, false);
   }
   map_.graph.nodes.push_back(node);
   chains_.add(step == ChainStep::kFresh, step != ChainStep::kOdometry, scan.tracked.T_local_sensor);
@@ -208,6 +233,10 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
   T_odom_sensor_node_ = scan.T_odom_sensor;
   T_odom_base_node_ = scan.T_odom_base;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;  // linking may have corrected it
+  {
+    const WorkClock clock(work_seconds_.candidates);
+    loops_.look(map_, chains_, node.id);
+  }
   return node.id;
 }
 
@@ -218,12 +247,17 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
                             ConstraintType type) {
     map_.graph.edges.push_back({next_edge_id_++, from, node.id, {scan.cloud.time, node.id, pose, covariance, type}});
   };
-  MatchLink match = incremental_.link(chains_.local_pose(anchor_.node),
-                                      between(anchor_.T_odom_sensor, scan.T_odom_sensor), scan.tracked);
+  // What is matched after a gap says where the node is from before the gap, not from the nodes within.
+  const bool after_gap = anchor_.node != previous.id;
+  MatchLink match =
+      incremental_.link(chains_.local_pose(anchor_.node), between(anchor_.T_odom_sensor, scan.T_odom_sensor),
+                        scan.tracked, after_gap && incremental_.knows_odometry());
+  if (match.contradicts_odometry && !fresh_local_map_) {
+    return begin_contradicted_chain(scan, node, T_previous_node, match);
+  }
   if (fresh_local_map_) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
   const bool believed = match.refusal.empty();
-  // What is matched after a gap says where the node is from before the gap, not from the nodes within.
-  if (!believed || anchor_.node != previous.id) {
+  if (!believed || after_gap) {
     add_edge(previous.id, T_previous_node, incremental_.odometry_covariance(T_previous_node),
              ConstraintType::kOdometry);
   }
@@ -233,6 +267,7 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   } else {
     ++statistics_.odometry_links;
     ++statistics_.match_refusals[match.refusal];
+    scan.missed = true;
     node.pose = previous.pose * T_previous_node;
   }
   if (!believed && !fresh_local_map_) {
@@ -247,22 +282,25 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   return step;
 }
 
-void Mapper::link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node,
-                          double time) {
+void Mapper::link_loosely(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
+                          const Node& node, double time) {
   map_.graph.edges.push_back(
-      {next_edge_id_++,
-       target,
-       node.id,
-       {time, node.id, T_target_node, kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity(),
-        ConstraintType::kOdometry}});
+      {next_edge_id_++, target, node.id, {time, node.id, T_target_node, covariance, ConstraintType::kOdometry}});
 }
 
-void Mapper::close_loops(std::uint64_t node) {
-  double surprise = 0.0;
-  for (const Closure& closure : loops_.find(map_, chains_, node, statistics_.loops)) {
-    surprise = std::max(surprise, add_closure(closure));
+void Mapper::close_loops() {
+  std::vector<Closure> closures;
+  {
+    const WorkClock clock(work_seconds_.matching);
+    closures = loops_.work(map_, chains_, statistics_.loops, closure_log_);
   }
-  solve_if_worthwhile(surprise);
+  solve_if_worthwhile(add_closures(closures));
+}
+
+double Mapper::add_closures(const std::vector<Closure>& closures) {
+  double surprise = 0.0;
+  for (const Closure& closure : closures) surprise = std::max(surprise, add_closure(closure));
+  return surprise;
 }
 
 double Mapper::add_closure(const Closure& closure) {
@@ -284,7 +322,10 @@ void Mapper::solve_if_worthwhile(double surprise) {
   if (pending_closures_ == 0) return;
   const std::uint64_t nodes = map_.graph.nodes.size();
   const std::uint64_t interval = std::max(kMinSolveInterval, nodes / kSolveGrowth);
-  if (surprise > kSurprise || nodes >= nodes_at_last_solve_ + interval) solve(kIterationsWhileMapping);
+  if (surprise > kSurprise || nodes >= nodes_at_last_solve_ + interval) {
+    solve(kIterationsWhileMapping);
+    look_at_solution();
+  }
 }
 
 // Links that an earlier false closure had switched off stay off, as nothing pulls at a switch that is 0. So the whole
@@ -294,9 +335,11 @@ void Mapper::solve_anew(int max_iterations) {
   Graph kept = map_.graph;
   for (SwitchableEdge& edge : map_.graph.switchable_edges) edge.switch_value = 1.0;
   if (solve(max_iterations) >= cost) map_.graph = std::move(kept);
+  look_at_solution();
 }
 
 double Mapper::solve(int max_iterations) {
+  const WorkClock clock(work_seconds_.solving);
   OptimizerOptions options;
   options.switchable_constraint_scale = parameters_.switchable_constraint_scale;
   options.max_iterations = max_iterations;
@@ -310,6 +353,7 @@ double Mapper::solve(int max_iterations) {
 
 ScanResult Mapper::result(const LastScan& scan, ScanOutcome outcome) const {
   ScanResult result;
+  result.tracking = tracking_state_;
   result.outcome = outcome;
   result.hit_fraction = scan.tracked.hit_fraction;
   result.status = scan.tracked.status;

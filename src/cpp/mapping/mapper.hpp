@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,11 +10,14 @@
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/graph/optimizer.hpp"
 #include "oort/mapping/chains.hpp"
+#include "oort/mapping/closure_log.hpp"
 #include "oort/mapping/dock_graph_builder.hpp"
 #include "oort/mapping/incremental_graph_builder.hpp"
 #include "oort/mapping/loop_closure_builder.hpp"
 #include "oort/mapping/map.hpp"
 #include "oort/mapping/statistics.hpp"
+#include "oort/mapping/tracking_state.hpp"
+#include "oort/mapping/work_clock.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -30,6 +34,9 @@ struct ScanResult {
   Pose2 T_node_sensor;
   double hit_fraction = 0.0;
   std::string status;  ///< what the scan matcher said; empty if it was not asked
+  TrackingState tracking = TrackingState::kTracking;
+  bool tried_closures = false;  ///< whether the scan's turn brought work on loop closures
+  bool solved = false;          ///< whether the graph was solved
 };
 
 /// Turns scans with odometry into a map: nodes and links, loop and dock closures, solved poses, named places.
@@ -83,6 +90,12 @@ class Mapper {
   std::optional<Pose2> locate(const std::string& name_space, const std::string& id) const;
 
   const MapperStatistics& statistics() const { return statistics_; }
+  /// What the CPU time since the mapper was made went into. Differs from run to run, and decides nothing.
+  const WorkSeconds& work_seconds() const { return work_seconds_; }
+
+  /// Keeps the latest attempts to close loops, as many as there is room for, for people who tune.
+  void keep_closure_attempts(std::size_t capacity) { closure_log_.set_capacity(capacity); }
+  const ClosureLog& closure_attempts() const { return closure_log_; }
 
  private:
   /// The latest scan and where it is.
@@ -92,6 +105,7 @@ class Mapper {
     Pose2 T_odom_base;
     TrackedScan tracked;  // its pose is odometry's as long as was_tracked is false
     bool was_tracked = false;
+    bool missed = false;  // nothing that it shows says where it is
     bool is_node = false;
   };
   /// How the next node hangs on what is there.
@@ -106,16 +120,22 @@ class Mapper {
   };
 
   bool is_due(const Pose2& T_odom_base) const;
+  bool has_moved_unnoticed(const LastScan& scan) const;
   void track(LastScan& scan);
   void carry(LastScan& scan) const;
   std::uint64_t make_node(LastScan& scan);
   ChainStep link_to_chain(LastScan& scan, Node& node);
-  void link_loosely(std::uint64_t target, const Pose2& T_target_node, double scale, const Node& node, double time);
-  void close_loops(std::uint64_t node);
+  ChainStep begin_contradicted_chain(LastScan& scan, Node& node, const Pose2& T_previous_node, const MatchLink& match);
+  void link_loosely(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
+                    const Node& node, double time);
+  void close_loops();
+  double add_closures(const std::vector<Closure>& closures);
   double add_closure(const Closure& closure);
   void solve_if_worthwhile(double surprise);
   void solve_anew(int max_iterations);
   double solve(int max_iterations);
+  void look_at_solution();
+  void count_tracking(TrackingState state);
   std::uint64_t nearest_node(const Eigen::Vector2d& p_map) const;
   ScanResult result(const LastScan& scan, ScanOutcome outcome) const;
 
@@ -127,6 +147,11 @@ class Mapper {
   LoopClosureBuilder loops_;
   DockGraphBuilder docks_;
   MapperStatistics statistics_;
+  WorkSeconds work_seconds_;
+  ClosureLog closure_log_;
+  TrackingMonitor tracking_;
+  TrackingState tracking_state_ = TrackingState::kTracking;
+  std::vector<bool> is_on_;  // each switchable edge, at the last solution
 
   NextLink next_link_ = NextLink::kNone;
   Pose2 T_map_start_;  // of a session to begin

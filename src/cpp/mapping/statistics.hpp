@@ -24,6 +24,21 @@ struct RefinementCounts {
   double moved = 0.0;          ///< root mean square of how far nodes were moved [m]
 };
 
+/// How many scans ended in each tracking state.
+struct TrackingCounts {
+  std::uint64_t tracking = 0;
+  std::uint64_t uncertain = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t changes = 0;  ///< from one state to another
+};
+
+/// What the solutions made of the closures that were accepted (REQUIREMENTS 4.1: a switch below 0.5 is off).
+struct SolvedCounts {
+  std::uint64_t kept = 0;          ///< on at the last solution
+  std::uint64_t contradicted = 0;  ///< off at the last solution
+  std::uint64_t came_back = 0;     ///< times that one which was off was on at a later solution
+};
+
 /// Counts since the mapper was made.
 struct MapperStatistics {
   std::uint64_t scans = 0;
@@ -32,8 +47,11 @@ struct MapperStatistics {
   std::uint64_t nodes = 0;
   std::uint64_t odometry_links = 0;                     ///< nodes whose match was refused
   std::map<std::string, std::uint64_t> match_refusals;  ///< of nodes, by reason
+  std::uint64_t contradictions = 0;                     ///< chains begun as odometry and scans disagreed
+  TrackingCounts tracking;
   ClosureCounts loops;
   ClosureCounts docks;
+  SolvedCounts solved;
   std::uint64_t solves = 0;
   std::uint64_t solves_cut_short = 0;  ///< that ended before they converged
   RefinementCounts refinement;

@@ -8,15 +8,22 @@
 
 namespace oort {
 
+namespace {
+
+void draw_scan(const Map& map, const Chains& chains, std::uint64_t origin, std::uint64_t node,
+               const frsm::ContourParams& contours, frsm::Table& table) {
+  const frsm::Pose T_origin_node = to_frsm(between(chains.local_pose(origin), chains.local_pose(node)));
+  const frsm::Points points = returns_of(map.clouds[node]);
+  table.draw(frsm::transform(T_origin_node, points), frsm::extract_contours(points, contours), T_origin_node);
+}
+
+}  // namespace
+
 std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const Chains& chains, std::uint64_t origin,
                                                const std::vector<std::uint64_t>& nodes, const frsm::TableParams& table,
                                                const frsm::ContourParams& contours) {
   auto drawn = std::make_shared<frsm::Table>(table);
-  for (const std::uint64_t node : nodes) {
-    const frsm::Pose T_origin_node = to_frsm(between(chains.local_pose(origin), chains.local_pose(node)));
-    const frsm::Points points = returns_of(map.clouds[node]);
-    drawn->draw(frsm::transform(T_origin_node, points), frsm::extract_contours(points, contours), T_origin_node);
-  }
+  for (const std::uint64_t node : nodes) draw_scan(map, chains, origin, node, contours, *drawn);
   return drawn;
 }
 
@@ -36,16 +43,40 @@ SubmapCache::SubmapCache(std::uint64_t neighborhood_size, std::size_t max_bytes,
 
 std::shared_ptr<const frsm::Table> SubmapCache::get(const Map& map, const Chains& chains, std::uint64_t node) {
   const std::vector<std::uint64_t> nodes = chains.neighborhood(node, neighborhood_size_);
-  const std::uint64_t end = nodes.back() + 1;
+  Entry& entry = latest(node);
+  draw_more(map, chains, nodes, nodes.size(), entry);
+  forget_oldest();
+  return entries_.front().table;
+}
+
+bool SubmapCache::draw(const Map& map, const Chains& chains, std::uint64_t node, std::uint64_t scans) {
+  const std::vector<std::uint64_t> nodes = chains.neighborhood(node, neighborhood_size_);
+  Entry& entry = latest(node);
+  if (entry.drawn == nodes.size()) return false;
+  draw_more(map, chains, nodes, std::min<std::size_t>(nodes.size(), entry.drawn + scans), entry);
+  return true;
+}
+
+SubmapCache::Entry& SubmapCache::latest(std::uint64_t node) {
   const auto found =
       std::find_if(entries_.begin(), entries_.end(), [node](const Entry& entry) { return entry.node == node; });
-  if (found != entries_.end() && found->end == end) {
+  if (found != entries_.end()) {
     entries_.splice(entries_.begin(), entries_, found);
   } else {
-    if (found != entries_.end()) entries_.erase(found);
-    entries_.push_front({node, end, draw_submap(map, chains, node, nodes, table_, contours_)});
+    entries_.push_front({node, std::make_shared<frsm::Table>(table_), 0});
   }
-  // Tables grow after they were handed out, when their bounds for branch and bound are built: count them anew.
+  return entries_.front();
+}
+
+void SubmapCache::draw_more(const Map& map, const Chains& chains, const std::vector<std::uint64_t>& nodes,
+                            std::size_t end, Entry& entry) const {
+  for (; entry.drawn < end; ++entry.drawn) {
+    draw_scan(map, chains, entry.node, nodes[entry.drawn], contours_, *entry.table);
+  }
+}
+
+// Tables grow after they were handed out, when their bounds for branch and bound are built: they are counted anew.
+void SubmapCache::forget_oldest() {
   std::size_t bytes = 0;
   for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
     bytes += entry->table->bytes();
@@ -54,7 +85,6 @@ std::shared_ptr<const frsm::Table> SubmapCache::get(const Map& map, const Chains
       break;
     }
   }
-  return entries_.front().table;
 }
 
 }  // namespace oort

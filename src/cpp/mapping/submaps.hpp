@@ -33,12 +33,20 @@ class SubmapCache {
 
   std::shared_ptr<const frsm::Table> get(const Map& map, const Chains& chains, std::uint64_t node);
 
+  /// Draws at most so many more scans of a node's submap. False if it was drawn already.
+  bool draw(const Map& map, const Chains& chains, std::uint64_t node, std::uint64_t scans);
+
  private:
   struct Entry {
     std::uint64_t node;
-    std::uint64_t end;  // of the neighbourhood: it grows while its node is among the newest
-    std::shared_ptr<const frsm::Table> table;
+    std::shared_ptr<frsm::Table> table;
+    std::size_t drawn;  // scans; the neighbourhood grows at its end while its node is among the newest
   };
+  Entry& latest(std::uint64_t node);
+  void draw_more(const Map& map, const Chains& chains, const std::vector<std::uint64_t>& nodes, std::size_t end,
+                 Entry& entry) const;
+  void forget_oldest();
+
   std::uint64_t neighborhood_size_;
   std::size_t max_bytes_;
   frsm::TableParams table_;

@@ -243,6 +243,15 @@ class ScanResult:
     @property
     def status(self) -> str:
         """What the scan matcher said; empty if it was not asked."""
+    @property
+    def tracking(self) -> str:
+        """How well the sensor's place is known: tracking, uncertain or lost."""
+    @property
+    def tried_closures(self) -> bool:
+        """Whether the scan brought work on loop closures."""
+    @property
+    def solved(self) -> bool:
+        """Whether the graph was solved."""
 
 class Mapper:
     """Turns scans with odometry into a map. Not thread-safe."""
@@ -299,6 +308,14 @@ class Mapper:
     @property
     def statistics(self) -> dict[str, Any]:
         """Counts since the mapper was made."""
+    @property
+    def work_seconds(self) -> dict[str, float]:
+        """CPU seconds since the mapper was made, by kind of work; they differ from run to run."""
+    def keep_closure_attempts(self, capacity: int) -> None:
+        """Keeps the latest attempts to close loops, so many at most."""
+    @property
+    def closure_attempts(self) -> list[tuple[int, int, str, _Pose, float]]:
+        """(query node, candidate node, reason of the refusal or "", T_candidate_query, hit fraction) of each kept."""
 
 def parameter_table() -> list[ParameterEntry]:
     """Every parameter once, in the order of params.json."""

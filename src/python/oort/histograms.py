@@ -21,6 +21,7 @@ _ODOMETRY = 1  # the type of an edge
 _TITLES = {
     ("hits", "scans"): "hit fraction of tracked scans",
     ("hits", "closures"): "hit fraction of closures",
+    ("hits", "refused"): "hit fraction of refused closures",
     ("chi2", "laser"): "chi2 of matched links",
     ("chi2", "odometry"): "chi2 of odometry links",
     ("chi2", "closures"): "chi2 of closures that are on",
@@ -28,10 +29,13 @@ _TITLES = {
 }
 
 
-def make_histograms(map_: Map, scan_hits: Sequence[float]) -> dict[str, dict[str, list[float]]]:
+def make_histograms(
+    map_: Map, scan_hits: Sequence[float], refused_hits: Sequence[float] = ()
+) -> dict[str, dict[str, list[float]]]:
     """Counts by hit fraction and by chi^2 (squared Mahalanobis distance), as report.json has them.
 
-    `scan_hits` are the hit fractions of the scans that were matched. The links' chi^2 are at the map's poses; a switch
+    `scan_hits` are the hit fractions of the scans that were matched, `refused_hits` those of closures that were refused
+    though there was a match. The links' chi^2 are at the map's poses; a switch
     takes nothing from it.
     """
     chain, closures = map_.edges, map_.switchable_edges
@@ -42,6 +46,7 @@ def make_histograms(map_: Map, scan_hits: Sequence[float]) -> dict[str, dict[str
             "edges": list(HIT_EDGES),
             "scans": _count(scan_hits, HIT_EDGES),
             "closures": _count(map_.loop_results["hit_fraction"], HIT_EDGES),
+            "refused": _count(refused_hits, HIT_EDGES),
         },
         "chi2": {
             "edges": list(CHI2_EDGES),

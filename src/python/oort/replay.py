@@ -13,6 +13,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from oort._core import Parameters, normalise_map_path
+from oort.attempts import MOST
 from oort.errors import InputError, OortError
 from oort.events import Event, read_events
 from oort.parameters import read_parameters
@@ -34,6 +35,8 @@ class ReplayOptions:
     until: float | None = None
     """[s] after the first stamp"""
     quiet: bool = False
+    keep_attempts: bool = False
+    """whether to tell of each attempt to close a loop"""
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
     Nothing is written: write_results() does that. Raises InputError if no scan could be mapped.
     """
     watch = Stopwatch()
-    session = Session(parameters, recording.sensor_on_base)
+    session = Session(parameters, recording.sensor_on_base, keep_attempts=MOST)
     recorder = TrajectoryRecorder(recording.sensor_on_base)
     schedule = make_schedule(options.events, _Caller(session, recorder))
     times: list[float] = []
@@ -88,7 +91,16 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
             f"{recording.name}: no scan made it into a map: each has fewer than "
             f"{parameters.get('min_pointcloud_size')} returns, or the map was cleared or never started"
         )
-    return Drive(recording, parameters, session, recorder, watch, max(times) - min(times), scan_hits)
+    return Drive(
+        recording,
+        parameters,
+        session,
+        recorder,
+        watch,
+        max(times) - min(times),
+        options.keep_attempts,
+        scan_hits,
+    )
 
 
 def _until(scans: Iterator[Scan], seconds: float | None) -> Iterator[Scan]:
@@ -140,7 +152,8 @@ def replay_to_folder(
     if not options.quiet:
         print(format_table(report))
         names = "trajectory.tum map.pgm map.yaml map.png histograms.png graph.g2o report.json"
-        print(f"wrote {folder}: {names}; map: {map_path}")
+        attempts = " closures.csv closures.png" if options.keep_attempts else ""
+        print(f"wrote {folder}: {names}{attempts}; map: {map_path}")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -161,6 +174,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--events", metavar="FILE", help="the service calls of the drive, a JSON list of t, call, args")
     parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
+    parser.add_argument(
+        "--closures", action="store_true", help="also write closures.csv and .png: each attempt to close a loop"
+    )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser
 
@@ -176,6 +192,7 @@ def _run(args: argparse.Namespace) -> None:
         resume=(args.resume, tuple(args.pose)) if args.resume else None,
         until=args.until,
         quiet=args.quiet,
+        keep_attempts=args.closures,
     )
     replay_to_folder(recording, parameters, options, args.out, args.map)
 

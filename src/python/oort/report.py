@@ -21,8 +21,8 @@ class Stopwatch:
     cpu_start: float = field(default_factory=time.process_time)
     scan_seconds: list[float] = field(default_factory=list)
 
-    def figures(self, recorded_seconds: float) -> dict[str, Any]:
-        """Cost so far: of each scan, of the whole, and against the length of the recording."""
+    def figures(self, recorded_seconds: float, work_seconds: Mapping[str, float]) -> dict[str, Any]:
+        """Cost so far: of each scan, of the whole and by kind of work, and against the length of the recording."""
         wall = time.perf_counter() - self.wall_start
         milliseconds = 1e3 * np.array(self.scan_seconds or [0.0])
         p50, p95, p99 = np.percentile(milliseconds, [50, 95, 99])
@@ -36,6 +36,7 @@ class Stopwatch:
             },
             "wall_seconds": round(wall, 3),
             "cpu_seconds": round(time.process_time() - self.cpu_start, 3),
+            "cpu_seconds_by_work": {work: round(seconds, 3) for work, seconds in work_seconds.items()},
             "times_real_time": round(recorded_seconds / wall, 1),
             "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
         }
@@ -74,13 +75,17 @@ def format_table(report: Mapping[str, Any]) -> str:
             "nodes",
             f"{report['nodes']} ({report['odometry_links']} linked by odometry{_reasons(report['match_refusals'])})",
         ),
+        ("tracking", _tracking(report["tracking"])),
         ("loop closures", _closures(report["loops"])),
         ("dock closures", _closures(report["docks"])),
-        ("switched off", f"{report['map']['switched_off']} of {report['map']['switchable_edges']}"),
+        (
+            "solved",
+            "{kept} closures kept, {contradicted} contradicted, {came_back} came back".format(**report["solved"]),
+        ),
         ("map", f"{report['map']['width']} x {report['map']['height']} cells of {report['map']['resolution']} m"),
         ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),
         ("times real time", f"{timings['times_real_time']:.0f}"),
-        ("CPU seconds", f"{timings['cpu_seconds']:.2f}"),
+        ("CPU seconds", f"{timings['cpu_seconds']:.2f}{_work(timings['cpu_seconds_by_work'])}"),
         ("peak memory", f"{timings['peak_memory_mb']:.0f} MB"),
     ]
     width = max(len(name) for name, _ in rows)
@@ -89,6 +94,15 @@ def format_table(report: Mapping[str, Any]) -> str:
 
 def _closures(counts: Mapping[str, Any]) -> str:
     return f"{counts['tried']} tried, {counts['accepted']} accepted{_reasons(counts['refused'], ', refused: ')}"
+
+
+def _tracking(scans: Mapping[str, int]) -> str:
+    states = ", ".join(f"{scans[state]} scans {state}" for state in ("tracking", "uncertain", "lost"))
+    return f"{states}; {scans['changes']} changes"
+
+
+def _work(seconds: Mapping[str, float]) -> str:
+    return f" ({', '.join(f'{work} {spent:.2f}' for work, spent in seconds.items())})"
 
 
 def _reasons(reasons: Mapping[str, int], lead: str = ": ") -> str:

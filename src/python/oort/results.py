@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from oort._core import Map, Parameters, render_map, save_map
-from oort.export import PoseGraph, write_g2o, write_map_server, write_picture, write_tum
+from oort._core import Map, Mapper, OccupancyGrid, Parameters, render_map, save_map
+from oort.attempts import judge_attempts, write_attempts
+from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
 from oort.export.chart import write_chart
 from oort.export.files import write_atomically
 from oort.histograms import make_histograms, panels
@@ -34,6 +36,8 @@ class Drive:
     recorder: TrajectoryRecorder
     watch: Stopwatch
     recorded_seconds: float
+    keep_attempts: bool = False
+    """whether to tell of each attempt to close a loop"""
     scan_hits: Sequence[float] = ()
     """hit fractions of the scans that were matched"""
 
@@ -41,7 +45,8 @@ class Drive:
 def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
     """Writes the map, and trajectory.tum, map.pgm, .yaml and .png, histograms.png, graph.g2o, report.json to a folder.
 
-    Returns the report. Raises OortError if something cannot be written.
+    If the drive keeps attempts, closures.csv and closures.png too. Returns the report. Raises OortError if something
+    cannot be written.
     """
     map_ = drive.session.map
     out.mkdir(parents=True, exist_ok=True)
@@ -64,7 +69,10 @@ def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
             rejected=closures[~on],
             locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
         )
-    histograms = make_histograms(map_, drive.scan_hits)
+        if drive.keep_attempts:
+            _write_attempts(out, drive.session.mapper, map_, grid)
+    refused = [hits for _, _, reason, _, hits in drive.session.mapper.closure_attempts if reason and hits > 0.0]
+    histograms = make_histograms(map_, drive.scan_hits, refused)
     if drawn := panels(histograms):
         write_chart(out / "histograms.png", drawn)
     report = make_report(
@@ -72,7 +80,7 @@ def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
         drive.session.mapper.statistics,
         drive.parameters.to_dict(),
         drive.recorded_seconds,
-        drive.watch.figures(drive.recorded_seconds),
+        drive.watch.figures(drive.recorded_seconds, drive.session.mapper.work_seconds),
         {
             "width": grid.cells.shape[1],
             "height": grid.cells.shape[0],
@@ -84,6 +92,17 @@ def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
     )
     write_atomically(out / "report.json", (json.dumps(report, indent=2) + "\n").encode())
     return report
+
+
+def _write_attempts(out: Path, mapper: Mapper, map_: Map, grid: OccupancyGrid) -> None:
+    attempts = judge_attempts(mapper.closure_attempts, map_)
+    write_attempts(out / "closures.csv", attempts)
+    positions = map_.node_poses[:, :2]
+    ends: dict[str, list[NDArray[np.float64]]] = {}
+    for attempt in attempts:
+        ends.setdefault(attempt.verdict, []).append(positions[[attempt.query, attempt.candidate]])
+    origin = (*grid.origin, 0.0)
+    write_closures_picture(out / "closures.png", grid.cells, grid.resolution, origin, ends)
 
 
 def _names(drive: Drive) -> list[tuple[str, str]]:

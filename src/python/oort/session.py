@@ -53,11 +53,14 @@ class Session:
         *,
         save: Save = save,
         prepare: Prepare = lambda call, path: None,
+        keep_attempts: int = 0,
     ) -> None:
         """Starts empty and not mapping; ``sensor_on_base`` is T_base_sensor.
 
         ``save`` is how maps reach the disk; ``prepare`` makes a path of map/start or map/resume ready for that.
+        ``keep_attempts``: of how many attempts to close loops the mapper tells, the latest.
         """
+        self._keep_attempts = keep_attempts
         self._parameters = parameters
         self._sensor_on_base = sensor_on_base
         self._save = save
@@ -269,7 +272,9 @@ class Session:
         return bool(self._path) and normalise_map_path(path) == normalise_map_path(self._path)
 
     def _new_mapper(self) -> Mapper:
-        return Mapper(self._parameters, self._sensor_on_base)
+        mapper = Mapper(self._parameters, self._sensor_on_base)
+        mapper.keep_closure_attempts(self._keep_attempts)
+        return mapper
 
     def _use(self, mapper: Mapper) -> None:
         self._mapper = mapper

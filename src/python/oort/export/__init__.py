@@ -4,7 +4,7 @@
 
 from oort.export.g2o import PoseGraph, read_g2o, write_g2o
 from oort.export.map_server import GridMap, read_map_server, write_map_server
-from oort.export.picture import write_picture
+from oort.export.picture import write_closures_picture, write_picture
 from oort.export.tum import Trajectory, read_tum, write_tum
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "read_g2o",
     "read_map_server",
     "read_tum",
+    "write_closures_picture",
     "write_g2o",
     "write_map_server",
     "write_picture",

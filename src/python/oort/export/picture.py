@@ -5,7 +5,7 @@
 import io
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +19,25 @@ from oort.recording.types import Pose
 _LONG_SIDE = 1600  # [px] at most; at least half of it
 _STRIP = 44  # [px] height of the legend below the map
 _FONT_SIZE = 15
+_ROW = 24  # [px] height of each further row of the legend
+_ENTRIES_IN_A_ROW = 3  # at least, of the narrowest picture
 _WAY, _START = (40, 90, 200), (20, 130, 220)
 _ACCEPTED, _REJECTED = (0, 150, 60), (220, 40, 40)
+_VERDICTS = {"contradicted": _REJECTED, "accepted": _ACCEPTED}
+_REFUSED = (  # told apart from one another and from the two above
+    (150, 150, 230),
+    (230, 160, 60),
+    (120, 200, 220),
+    (200, 130, 200),
+    (170, 140, 100),
+    (240, 130, 160),
+    (150, 170, 60),
+    (110, 110, 110),
+    (240, 210, 60),
+    (90, 90, 180),
+    (60, 140, 140),
+    (190, 190, 190),
+)
 _PLACE, _INK, _PAPER = (200, 90, 0), (30, 30, 30), (255, 255, 255)
 
 
@@ -61,6 +78,37 @@ def write_picture(
             ("locations", _PLACE, len(locations)),
         ]
     )
+    _write(canvas, path)
+
+
+def write_closures_picture(
+    path: str | os.PathLike[str],
+    cells: ArrayLike,
+    resolution: float,
+    origin: Pose,
+    closures: Mapping[str, ArrayLike],
+) -> None:
+    """Writes a PNG of the attempts to close loops, each verdict in a colour of its own; deterministic.
+
+    `cells`, `resolution` and `origin` are as in GridMap. `closures` are the ends of the attempts by verdict, (k, 2, 2)
+    x, y [m] in the map's frame: "accepted", "contradicted" (by the solution), and any reasons of refusals. Raises
+    InputError for an unusable grid, OortError if the file cannot be written.
+    """
+    refused = sorted(set(closures) - set(_VERDICTS))
+    colours = {reason: _REFUSED[k % len(_REFUSED)] for k, reason in enumerate(refused)} | _VERDICTS
+    names = [name for name in colours if name in closures]
+    grid, scale = _scaled(grey_picture(cells))
+    canvas = _Canvas(grid, resolution / scale, origin, len(names))
+    for name in names:  # what was accepted above what was refused
+        for line in np.asarray(closures[name], dtype=np.float64).reshape(-1, 2, 2):
+            canvas.line(line, colours[name], 2 if name in _VERDICTS else 1)
+            canvas.dot(line[1], colours[name], 2)
+    counts = {name: np.asarray(closures[name]).size // 4 for name in names}
+    canvas.legend([(f"{name} {counts[name]}", colours[name], counts[name]) for name in reversed(names)])
+    _write(canvas, path)
+
+
+def _write(canvas: "_Canvas", path: str | os.PathLike[str]) -> None:
     buffer = io.BytesIO()
     canvas.image.save(buffer, format="PNG")
     write_atomically(Path(path), buffer.getvalue())
@@ -86,13 +134,15 @@ def _scaled(grey: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], float]:
 class _Canvas:
     """Draws map coordinates onto the picture."""
 
-    def __init__(self, grid: NDArray[np.uint8], metres_per_pixel: float, origin: Pose) -> None:
+    def __init__(self, grid: NDArray[np.uint8], metres_per_pixel: float, origin: Pose, legend_entries: int = 0) -> None:
+        """With room below for so many entries of a legend, beyond those of one row."""
         height, width = grid.shape
         self._height = height
         self._metres_per_pixel = metres_per_pixel
         self._origin = origin
         self._font = ImageFont.load_default(_FONT_SIZE)
-        self.image = Image.new("RGB", (max(width, _LONG_SIDE // 2), height + _STRIP), _PAPER)
+        rows = legend_entries // _ENTRIES_IN_A_ROW
+        self.image = Image.new("RGB", (max(width, _LONG_SIDE // 2), height + _STRIP + rows * _ROW), _PAPER)
         self.image.paste(Image.fromarray(grid).convert("RGB"), (0, 0))
         self._draw = ImageDraw.Draw(self.image)
 
@@ -132,9 +182,12 @@ class _Canvas:
         x = end + 32
         for name, colour, present in entries:
             if present:
+                length = 36 + self._draw.textlength(name, font=self._font)
+                if x + length > self.image.width:
+                    x, baseline = 12.0, baseline + _ROW
                 self._draw.rectangle((x, baseline - 10, x + 14, baseline + 4), fill=colour)
                 self._draw.text((x + 20, baseline - 12), name, fill=_INK, font=self._font)
-                x += 36 + self._draw.textlength(name, font=self._font)
+                x += length
 
 
 def _round_length(metres: float) -> float:

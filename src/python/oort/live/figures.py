@@ -10,23 +10,19 @@ from oort._core import ScanResult
 from oort.live.window import Rate, Window
 from oort.session import State
 
-_TRACKED = ("ok", "degenerate")  # what the scan matcher says of a scan that it could place
-_LOST = 20  # scans in a row that it could not place: two seconds
 _QUIET = 10.0  # [s] between two words on one reason
 _OF_LATE = 5.0  # [s]
 _NEVER = float("-inf")
 
 
 class Tracking(enum.Enum):
-    """How well the robot's place is known."""
+    """How well the robot's place is known: what the last scan's result says of it (docs/tracking.md), or idle."""
 
     IDLE = "idle"
     """nothing is being mapped"""
     TRACKING = "tracking"
     UNCERTAIN = "uncertain"
-    """the last scans did not fit what was seen before; odometry tells where they were"""
     LOST = "lost"
-    """it has been so for long"""
 
 
 class Drops:
@@ -71,7 +67,6 @@ class Figures:
         self.delays = Window()
         """[ms] from a scan's arrival until it is mapped and told"""
         self.last_result: ScanResult | None = None
-        self._misses = 0  # scans in a row that did not fit what was seen before
         self._arrivals = Rate()
         self._last_arrival = _NEVER
 
@@ -86,13 +81,10 @@ class Figures:
         self.scans_mapped += 1
         self.milliseconds.add(1e3 * seconds)
         self.last_result = result
-        if result is not None and result.status:
-            self._misses = 0 if result.status in _TRACKED else self._misses + 1
 
     def forget(self) -> None:
         """The map that the last scans were mapped into is gone."""
         self.last_result = None
-        self._misses = 0
 
     @property
     def scan_rate(self) -> float:
@@ -108,6 +100,4 @@ class Figures:
         """How well the robot's place is known."""
         if state is not State.MAPPING or self.last_result is None:
             return Tracking.IDLE
-        if self._misses == 0:
-            return Tracking.TRACKING
-        return Tracking.UNCERTAIN if self._misses < _LOST else Tracking.LOST
+        return Tracking(self.last_result.tracking)

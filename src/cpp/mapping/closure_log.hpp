@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "oort/geometry/pose2.hpp"
+
+namespace oort {
+
+/// One attempt to close a loop.
+struct ClosureAttempt {
+  std::uint64_t query = 0;
+  std::uint64_t candidate = 0;
+  std::string reason;         ///< of the refusal; empty: accepted
+  Pose2 T_candidate_query;    ///< where the match put the query; where the graph expected it, if there is no match
+  double hit_fraction = 0.0;  ///< of the match that was looked at last
+};
+
+/// Remembers the latest attempts to close loops, for people who tune. It holds none unless it is given room.
+class ClosureLog {
+ public:
+  /// How many attempts are kept: the newest. Those that are too many now are forgotten.
+  void set_capacity(std::size_t capacity);
+
+  void add(ClosureAttempt attempt);
+
+  /// An attempt that was refused when it was added is accepted after all.
+  void accept(std::uint64_t query, std::uint64_t candidate);
+
+  const std::deque<ClosureAttempt>& attempts() const { return attempts_; }
+  std::uint64_t forgotten() const { return forgotten_; }  ///< for want of room
+
+ private:
+  void trim();
+
+  std::size_t capacity_ = 0;
+  std::uint64_t forgotten_ = 0;
+  std::deque<ClosureAttempt> attempts_;  // oldest first
+};
+
+}  // namespace oort

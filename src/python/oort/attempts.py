@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""What became of each attempt to close a loop, for people who tune."""
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from oort._core import Map
+from oort.export.files import write_atomically
+from oort.recording import Pose
+
+ACCEPTED, CONTRADICTED = "accepted", "contradicted"
+MOST = 200_000
+"""attempts that are kept at most: the newest; some 30 MB"""
+
+_ON = 0.5  # a closure whose switch is below is off (REQUIREMENTS 4.1)
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One attempt: where was the node ``query`` looked for, and what was said of it."""
+
+    query: int
+    candidate: int
+    verdict: str
+    """accepted; contradicted: accepted, but the last solution leaves it out; else the reason why it was refused"""
+    T_candidate_query: Pose
+    """where the match put the query; where the graph had it if there was no match"""
+    hit_fraction: float
+    switch: float | None
+    """of an accepted one at the last solution"""
+
+
+def judge_attempts(told: Sequence[tuple[int, int, str, Pose, float]], map_: Map) -> list[Attempt]:
+    """The attempts of ``Mapper.closure_attempts`` with what the map's solution says of those that were accepted."""
+    edges = map_.switchable_edges
+    ends = zip(edges["i"].tolist(), edges["j"].tolist(), strict=True)
+    switches = dict(zip(ends, edges["switch"].tolist(), strict=True))
+    attempts = []
+    for query, candidate, reason, pose, hits in told:
+        switch = None if reason else switches[query, candidate]
+        accepted = CONTRADICTED if switch is not None and switch < _ON else ACCEPTED
+        attempts.append(Attempt(query, candidate, reason or accepted, pose, hits, switch))
+    return attempts
+
+
+def write_attempts(path: Path, attempts: Sequence[Attempt]) -> None:
+    """Writes a table of one line per attempt. Raises OortError if the file cannot be written."""
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["query", "candidate", "verdict", "x", "y", "theta", "hit_fraction", "switch"])
+    for a in attempts:
+        numbers = [f"{value:.4f}" for value in (*a.T_candidate_query, a.hit_fraction)]
+        table.writerow([a.query, a.candidate, a.verdict, *numbers, "" if a.switch is None else f"{a.switch:.4f}"])
+    write_atomically(path, text.getvalue().encode())
