@@ -24,7 +24,7 @@ constexpr std::uint64_t kWideStride = 4;  // every how many-th node looks that f
 // thinner from elsewhere. Mean ATE of 20 made-up homes 0.0122 m instead of 0.0143 m without.
 constexpr double kScanSigma = 0.03;        // [m]
 constexpr double kScanSigmaTheta = 0.008;  // [rad]
-constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015};
+constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015, 8.0};
 
 // Attempts that may wait for the next scans, so that none of these takes long: those of two to four nodes.
 constexpr std::size_t kMaxWaiting = 8;

@@ -258,9 +258,9 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   const bool believed = match.refusal.empty();
   if (!believed || after_gap) {
     Eigen::Matrix3d covariance = incremental_.odometry_covariance(T_previous_node);
-    if (fresh_local_map_ && incremental_.knows_odometry()) {
+    if (left_poor_local_map_) {
       covariance += least_contradiction();
-      tracking_.hang_loosely(node.id, false);
+      tracking_.hang_loosely(node.id, true);
     }
     add_edge(previous.id, T_previous_node, covariance, ConstraintType::kOdometry);
   }
@@ -282,6 +282,7 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
                                       scan.tracked.hit_fraction});
   const ChainStep step = believed ? ChainStep::kMatched : fresh_local_map_ ? ChainStep::kFresh : ChainStep::kOdometry;
   fresh_local_map_ = false;
+  left_poor_local_map_ = false;
   return step;
 }
 

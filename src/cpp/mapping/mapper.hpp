@@ -161,9 +161,10 @@ class Mapper {
   Pose2 T_local_sensor_tracked_;  // and what it said
   Anchor anchor_;
   int refusals_in_a_row_ = 0;
-  int poor_in_a_row_ = 0;         // scans whose matches had few hits
-  bool fresh_local_map_ = false;  // no node yet is on the local map that scans are matched with
-  Pose2 T_odom_sensor_node_;      // at the newest node
+  int poor_in_a_row_ = 0;             // scans whose matches had few hits
+  bool left_poor_local_map_ = false;  // as there were too many of them
+  bool fresh_local_map_ = false;      // no node yet is on the local map that scans are matched with
+  Pose2 T_odom_sensor_node_;          // at the newest node
   Pose2 T_odom_base_node_;
   std::uint64_t next_edge_id_ = 0;
   std::uint64_t pending_closures_ = 0;  // since the last solve

@@ -53,6 +53,7 @@ void Mapper::leave_poor_local_map(LastScan& scan) {
   scan.tracked.hit_fraction = hits;
   scan.tracked.restarted = true;
   scan.missed = true;
+  left_poor_local_map_ = true;
 }
 
 // Odometry slipped, or was carried, or the match is a chance one: which of them is not known. A new chain begins with
