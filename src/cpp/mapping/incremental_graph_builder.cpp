@@ -88,7 +88,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
                                      link.T_anchor_node.translation().norm());
-  if (motion_model_ && is_placed(node)) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
+  if (motion_model_ && link.refusal.empty()) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
   return link;
 }
 

@@ -29,7 +29,7 @@ struct MatchLink {
   Eigen::Matrix3d covariance;  ///< along the axes of the anchor
   std::string refusal;         ///< why it is not to be believed; empty when it is
   /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
-  /// constant odometry model.
+  /// constant odometry model, nor of a match that is refused: then odometry is believed.
   bool contradicts_odometry = false;
   Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
