@@ -175,7 +175,6 @@ TEST_F(LinkTest, OdometryFarOffAGoodMatchContradictsIt) {
   follow();
   filter.y_abs_accept = filter.theta_abs_accept = filter.x_max_accept = 2.0;
   filter.x_min_accept = -2.0;
-  restart();
   EXPECT_FALSE(contradicts({0.5, 0.0, 0.0}));  // the constant model does not know
   set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
   restart();

@@ -92,7 +92,7 @@ TEST_F(FaultTest, AGoodDriveIsTrackedFromItsFirstScan) {
 
 TEST_F(FaultTest, OdometryThatJumpsIsOverruledAndAClosureTellsThatItWasRight) {
   constexpr std::size_t kJump = 250;
-  for (std::size_t k = kJump; k < odometry.size(); ++k) odometry[k] = Pose2{0.9, -0.8, 0.5} * odometry[k];
+  for (std::size_t k = kJump; k < odometry.size(); ++k) odometry[k] = Pose2{0.5, -0.4, 0.3} * odometry[k];
   const std::vector<State> states = drive();
   EXPECT_LT(error_at_end(), 0.1);
   EXPECT_EQ(states.back(), State::kTracking);
