@@ -35,7 +35,7 @@ class LinkTest : public ::testing::Test {
   }
 
   /// The verdict where the match differs from what odometry says by `T_odometry_match`.
-  std::string refusal(const Pose2& T_odometry_match) const {
+  std::string refusal(const Pose2& T_odometry_match) {
     return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node, false).refusal;
   }
 
@@ -173,6 +173,8 @@ TEST_F(LinkTest, OdometryFarOffAGoodMatchContradictsIt) {
     return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node, false).contradicts_odometry;
   };
   follow();
+  filter.y_abs_accept = filter.theta_abs_accept = filter.x_max_accept = 2.0;
+  filter.x_min_accept = -2.0;
   EXPECT_FALSE(contradicts({0.5, 0.0, 0.0}));  // the constant model does not know
   set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
   restart();
@@ -182,6 +184,7 @@ TEST_F(LinkTest, OdometryFarOffAGoodMatchContradictsIt) {
   EXPECT_TRUE(contradicts({10.0 * sigma, 0.0, 0.0}));
   EXPECT_TRUE(contradicts({0.0, -10.0 * sigma, 0.0}));
   EXPECT_TRUE(contradicts({0.0, 0.0, 1.0}));
+  EXPECT_FALSE(contradicts({2.1, 0.0, 0.0}));          // is refused
   node.hit_fraction = filter.min_accept_score - 0.01;  // a poor match says nothing against odometry
   EXPECT_FALSE(contradicts({10.0 * sigma, 0.0, 0.0}));
 }
@@ -222,6 +225,8 @@ TEST_F(CorridorTest, WhatTheMatchDoesNotSeeIsLeftToOdometry) {
 
 TEST_F(CorridorTest, OfAContradictionOdometryIsTakenForWhatTheMatchDoesNotSee) {
   set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
+  filter.y_abs_accept = filter.x_max_accept = 2.0;
+  filter.x_min_accept = -2.0;
   builder = IncrementalGraphBuilder(parameters);
   follow({0.0, 0.0, 0.0});
   const Pose2 odometry = node.T_local_sensor * Pose2{1.0, 0.6, 0.0};  // 1 m more along the walls, 0.6 m across

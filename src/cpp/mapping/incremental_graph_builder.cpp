@@ -85,14 +85,19 @@ bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
 }
 
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
-                                        const TrackedScan& node, bool odometry_is_linked) const {
+                                        const TrackedScan& node, bool odometry_is_linked) {
   MatchLink link;
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
-  link.refusal = refusal(node, between(T_anchor_node_odometry, link.T_anchor_node));
+  const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
+  link.refusal = refusal(node, T_odometry_match);
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
                                      link.T_anchor_node.translation().norm());
-  if (motion_model_ && is_placed(node)) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
+  if (motion_model_ && link.refusal.empty()) {
+    compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
+    const bool telling = !node.degenerate && node.hit_fraction >= kTellingHits;
+    if (telling) odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
+  }
   return link;
 }
 
@@ -149,7 +154,7 @@ void IncrementalGraphBuilder::compare(const TrackedScan& node, double heading, c
   const Pose2& driven = T_anchor_node_odometry;
   const Eigen::Vector3d difference(link.T_anchor_node.x - driven.x, link.T_anchor_node.y - driven.y,
                                    wrap_angle(link.T_anchor_node.theta - driven.theta));
-  const Eigen::Matrix3d odometry = odometry_covariance(driven);
+  const Eigen::Matrix3d odometry = odometry_model_.model().covariance(driven);  // a slip is none of what is learned
   link.contradicts_odometry = difference.dot(odometry.inverse() * difference) > kContradiction;
   const Eigen::Matrix3d match = match_information(node, heading);
   const Eigen::Matrix3d doubted = kDoubt * kDoubt * Eigen::Matrix3d::Identity() + odometry;

@@ -30,7 +30,7 @@ struct MatchLink {
   Eigen::Matrix3d covariance;  ///< along the axes of the anchor
   std::string refusal;         ///< why it is not to be believed; empty when it is
   /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
-  /// constant odometry model.
+  /// constant odometry model, nor of a match that is refused: then odometry is believed.
   bool contradicts_odometry = false;
   Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
@@ -51,11 +51,12 @@ class IncrementalGraphBuilder {
   /// Whether a scan's match says where it is: usable, and with hits enough to be believed.
   bool is_placed(const TrackedScan& scan) const;
 
-  /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor.
+  /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor,
+  /// and learns from it how good the odometry is.
   /// The link's covariance is that of the match and of odometry together; `odometry_is_linked`: of the match alone, as
   /// links by odometry lead from the anchor to the node already and would count twice.
   MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node,
-                 bool odometry_is_linked) const;
+                 bool odometry_is_linked);
 
   /// Overrules the matcher: the scan just tracked is at this pose of the local frame.
   void correct(const Pose2& T_local_sensor);

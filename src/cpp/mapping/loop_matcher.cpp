@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/mapping/loop_matcher.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "oort/mapping/frsm_setup.hpp"
@@ -33,12 +34,18 @@ frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const Lo
   return params;
 }
 
+frsm::TableParams loop_table_params(const FrsmMatcherParameters& p, const LoopScale& scale) {
+  frsm::TableParams params = table_params(p);
+  params.radius = std::min(params.radius, scale.reach);
+  return params;
+}
+
 }  // namespace
 
 LoopMatcher::LoopMatcher(const Parameters& parameters, const LoopScale& scale)
     : parameters_(parameters.loop_closure_graph_builder.frsm_matcher),
       scale_(scale),
-      table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
+      table_(loop_table_params(parameters.incremental_graph_builder.frsm_matcher, scale)),
       submaps_(scale.submap_nodes, kSubmapCacheBytes, table_, frsm::ContourParams::urg()),
       matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale)) {}
 
@@ -59,7 +66,8 @@ LoopMatcher::Found LoopMatcher::find(const Map& map, const Chains& chains, std::
   };
   if (is_small(chains, candidate)) return refused("small_submap", expected, 0.0);
   const frsm::Points points =
-      thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes)), scale_.fine_points);
+      thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach),
+              scale_.fine_points);
   const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
   const frsm::Prior prior{to_frsm(expected), window.covariance};
   const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,

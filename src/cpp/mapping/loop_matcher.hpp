@@ -30,6 +30,7 @@ struct LoopScale {
   double max_ambiguity = 1.0;       ///< largest score of the best pose elsewhere, as a share of the best; 1: any
   double sigma_xy = 0.0;            ///< how far the chains are bent over the nodes that are matched [m]
   double sigma_theta = 0.0;         ///< [rad]
+  double reach = 1e3;               ///< returns farther from their sensor are left out [m]
 };
 
 /// Measures where a node stands in the submap of another: roughly over the whole window by branch and bound, then

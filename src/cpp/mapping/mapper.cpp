@@ -182,6 +182,7 @@ void Mapper::track(LastScan& scan) {
   scan.tracked = incremental_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor);
   scan.was_tracked = true;
   scan.missed = !is_first && !incremental_.is_placed(scan.tracked);
+  leave_poor_local_map(scan);
   if (scan.tracked.restarted) fresh_local_map_ = true;
   T_odom_sensor_tracked_ = scan.T_odom_sensor;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
@@ -258,8 +259,12 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   if (fresh_local_map_) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
   const bool believed = match.refusal.empty();
   if (!believed || after_gap) {
-    add_edge(previous.id, T_previous_node, incremental_.odometry_covariance(T_previous_node),
-             ConstraintType::kOdometry);
+    Eigen::Matrix3d covariance = incremental_.odometry_covariance(T_previous_node);
+    if (left_poor_local_map_) {
+      covariance += least_contradiction();
+      tracking_.hang_loosely(node.id, true);
+    }
+    add_edge(previous.id, T_previous_node, covariance, ConstraintType::kOdometry);
   }
   if (believed) {
     add_edge(anchor_.node, match.T_anchor_node, match.covariance, ConstraintType::kLaser);
@@ -279,6 +284,7 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
                                       scan.tracked.hit_fraction});
   const ChainStep step = believed ? ChainStep::kMatched : fresh_local_map_ ? ChainStep::kFresh : ChainStep::kOdometry;
   fresh_local_map_ = false;
+  left_poor_local_map_ = false;
   return step;
 }
 

@@ -122,10 +122,12 @@ class Mapper {
   bool is_due(const Pose2& T_odom_base) const;
   bool has_moved_unnoticed(const LastScan& scan) const;
   void track(LastScan& scan);
+  void leave_poor_local_map(LastScan& scan);
   void carry(LastScan& scan) const;
   std::uint64_t make_node(LastScan& scan);
   ChainStep link_to_chain(LastScan& scan, Node& node);
   ChainStep begin_contradicted_chain(LastScan& scan, Node& node, const Pose2& T_previous_node, const MatchLink& match);
+  static Eigen::Matrix3d least_contradiction();
   void link_loosely(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
                     const Node& node, double time);
   void close_loops();
@@ -160,8 +162,10 @@ class Mapper {
   Pose2 T_local_sensor_tracked_;  // and what it said
   Anchor anchor_;
   int refusals_in_a_row_ = 0;
-  bool fresh_local_map_ = false;  // no node yet is on the local map that scans are matched with
-  Pose2 T_odom_sensor_node_;      // at the newest node
+  int poor_in_a_row_ = 0;             // scans whose matches had few hits
+  bool left_poor_local_map_ = false;  // as there were too many of them
+  bool fresh_local_map_ = false;      // no node yet is on the local map that scans are matched with
+  Pose2 T_odom_sensor_node_;          // at the newest node
   Pose2 T_odom_base_node_;
   std::uint64_t next_edge_id_ = 0;
   std::uint64_t pending_closures_ = 0;  // since the last solve

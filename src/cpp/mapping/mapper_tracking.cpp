@@ -19,6 +19,10 @@ constexpr double kTellingHits = 0.8;
 constexpr double kContradictedVariance = 0.26;       // [m^2], for each of x and y
 constexpr double kContradictedVarianceTheta = 0.06;  // [rad^2]
 
+// A scan of which fewer hit is poorly matched; so many in a row, and the local map is not of this place.
+constexpr double kPoorHits = 0.6;
+constexpr int kMaxPoor = 8;
+
 constexpr double kSwitchOn = 0.5;  // a closure with this or more is believed (REQUIREMENTS 4.1)
 
 }  // namespace
@@ -31,6 +35,25 @@ bool Mapper::has_moved_unnoticed(const LastScan& scan) const {
                               scan.tracked.T_local_sensor * T_sensor_base);
   return moved.translation().norm() >= kUnnoticed * parameters_.linear_update ||
          std::abs(moved.theta) >= kUnnoticed * parameters_.angular_update;
+}
+
+Eigen::Matrix3d Mapper::least_contradiction() {
+  return Eigen::Vector3d(kContradictedVariance, kContradictedVariance, kContradictedVarianceTheta).asDiagonal();
+}
+
+// Matches go on by chance after a robot was put down elsewhere. The scans of a good match hit by nine tenths and more.
+void Mapper::leave_poor_local_map(LastScan& scan) {
+  const bool poor = scan.tracked.usable && scan.tracked.hit_fraction < kPoorHits && incremental_.knows_odometry();
+  poor_in_a_row_ = poor ? poor_in_a_row_ + 1 : 0;
+  if (poor_in_a_row_ < kMaxPoor) return;
+  poor_in_a_row_ = 0;
+  const double hits = scan.tracked.hit_fraction;
+  incremental_.begin(scan.tracked.T_local_sensor);
+  scan.tracked = incremental_.track(returns_of(scan.cloud), scan.cloud.time, Pose2{});
+  scan.tracked.hit_fraction = hits;
+  scan.tracked.restarted = true;
+  scan.missed = true;
+  left_poor_local_map_ = true;
 }
 
 // Odometry slipped, or was carried, or the match is a chance one: which of them is not known. A new chain begins with
@@ -46,9 +69,9 @@ Mapper::ChainStep Mapper::begin_contradicted_chain(LastScan& scan, Node& node, c
   const Pose2 apart = between(T_previous_node, from_previous(match.T_anchor_node));
   const double hits = scan.tracked.hit_fraction;
   const Pose2 chosen = hits >= kTellingHits ? from_previous(match.T_anchor_node_weighed) : T_previous_node;
-  const double xy = kContradictedVariance + apart.translation().squaredNorm();
-  const double theta = kContradictedVarianceTheta + apart.theta * apart.theta;
-  const Eigen::Matrix3d covariance = Eigen::Vector3d(xy, xy, theta).asDiagonal();
+  const double distance2 = apart.translation().squaredNorm();
+  const Eigen::Vector3d far_apart(distance2, distance2, apart.theta * apart.theta);
+  const Eigen::Matrix3d covariance = least_contradiction() + Eigen::Matrix3d(far_apart.asDiagonal());
   link_loosely(previous.id, chosen, covariance, node, scan.cloud.time);
   node.pose = previous.pose * chosen;
   incremental_.begin(T_local_previous * chosen);

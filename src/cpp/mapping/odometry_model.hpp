@@ -35,6 +35,8 @@ class LearnedOdometry {
   /// Takes a motion by odometry and where the match found its end, seen from where odometry did.
   void learn(const Pose2& T_before_after, const Pose2& T_odometry_match);
 
+  const OdometryModel& model() const { return model_; }
+
   /// The factors, as standard deviations.
   double translation_factor() const { return std::sqrt(translation_); }
   double rotation_factor() const { return std::sqrt(rotation_); }

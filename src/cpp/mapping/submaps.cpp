@@ -3,6 +3,7 @@
 #include "oort/mapping/submaps.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "oort/matching/frsm_adapter.hpp"
 
@@ -28,11 +29,14 @@ std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const Chains& cha
 }
 
 frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t origin,
-                           const std::vector<std::uint64_t>& nodes) {
+                           const std::vector<std::uint64_t>& nodes, double reach) {
   frsm::Points points;
   for (const std::uint64_t node : nodes) {
-    append_transformed(returns_of(map.clouds[node]), between(chains.local_pose(origin), chains.local_pose(node)),
-                       points);
+    frsm::Points seen = returns_of(map.clouds[node]);
+    seen.erase(std::remove_if(seen.begin(), seen.end(),
+                              [reach](const frsm::Point& p) { return std::hypot(p.x, p.y) > reach; }),
+               seen.end());
+    append_transformed(seen, between(chains.local_pose(origin), chains.local_pose(node)), points);
   }
   return points;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <frsm/contours.hpp>
 #include <frsm/table.hpp>
+#include <limits>
 #include <list>
 #include <memory>
 #include <vector>
@@ -19,9 +20,11 @@ std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const Chains& cha
                                                const std::vector<std::uint64_t>& nodes, const frsm::TableParams& table,
                                                const frsm::ContourParams& contours);
 
-/// The returns of some nodes of one segment, in the frame of `origin`, a node of that segment.
+/// The returns of some nodes of one segment, in the frame of `origin`, a node of that segment; those farther than
+/// `reach` [m] from where they were seen are left out.
 frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t origin,
-                           const std::vector<std::uint64_t>& nodes);
+                           const std::vector<std::uint64_t>& nodes,
+                           double reach = std::numeric_limits<double>::infinity());
 
 /// Submaps of nodes, each drawn when it is first asked for and again after it fell out of the cache. A submap shows a
 /// node's neighbourhood in the frame of the node; since it is made from poses that never change, what is cached only
