@@ -3,6 +3,7 @@
 #include "oort/mapping/incremental_graph_builder.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,22 @@
 
 namespace oort {
 namespace {
+
+// Surfaces in the local map are off by this much from one another [m], which turns a scan that sees little of them. Of
+// 60 degree views in simulated homes, links err by 0.014 rad where the returns lie within 0.5 m of their middle.
+constexpr double kSurfaceError = 0.005;
+constexpr double kLeastExtent = 0.1;  // [m]
+
+double extent_of(const frsm::Points& points) {
+  double x = 0.0, y = 0.0, squares = 0.0;
+  for (const frsm::Point& p : points) {
+    x += p.x;
+    y += p.y;
+    squares += p.x * p.x + p.y * p.y;
+  }
+  const auto n = static_cast<double>(std::max<std::size_t>(points.size(), 1));
+  return std::sqrt(std::max(squares / n - (x * x + y * y) / (n * n), 0.0));
+}
 
 // A match tells how good odometry is if so many of its returns hit.
 constexpr double kTellingHits = 0.8;
@@ -73,6 +90,7 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   tracked.information = match.information;
   tracked.covariance = match.covariance;
   tracked.hit_fraction = match.hit_fraction;
+  tracked.extent = extent_of(points);
   tracked.degenerate = match.degenerate;
   tracked.usable = tracker_.matched();
   tracked.restarted = tracker_.restarts() > restarts;
@@ -137,7 +155,8 @@ Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& nod
     // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
     covariance = (match_information(node, heading) + others.inverse()).inverse();
     const double heading_error = parameters_.frsm_matcher.heading_error_per_meter * distance;
-    covariance(2, 2) += heading_error * heading_error;
+    const double turn = kSurfaceError / std::max(node.extent, kLeastExtent);
+    covariance(2, 2) += heading_error * heading_error + turn * turn;
   } else {
     // As the original did: the matcher's own covariance, scaled, without its terms between position and heading.
     covariance = rotate_covariance(node.covariance, -heading) * (scale * scale);

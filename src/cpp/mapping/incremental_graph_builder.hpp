@@ -18,6 +18,7 @@ struct TrackedScan {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the match alone, axes of the local frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the match and what was expected, same axes
   double hit_fraction = 0.0;
+  double extent = 0.0;      ///< root mean square distance of the returns from their middle [m]
   bool degenerate = false;  ///< the match leaves a direction open
   bool usable = false;
   bool restarted = false;  ///< a fresh local map begins with this scan: the old one did not fit any more

@@ -63,8 +63,8 @@ class Mapper {
   /// The next scan makes a node whose link to the last one is very uncertain.
   void resume_from_paused();
 
-  /// Solves with all that is known, then lets scans that saw the same surfaces agree (refinement.hpp). The map is at its
-  /// final solution afterwards; mapping may go on.
+  /// Solves with all that is known, then lets scans that saw the same surfaces agree (refinement.hpp). The map is at
+  /// its final solution afterwards; mapping may go on.
   void finish();
 
   const Map& map() const { return map_; }
@@ -135,7 +135,8 @@ class Mapper {
   double add_closure(const Closure& closure);
   void solve_if_worthwhile(double surprise);
   void solve_anew(int max_iterations);
-  double solve(int max_iterations);
+  bool solve_newest();
+  OptimizerSummary solve(int max_iterations, std::uint64_t first_free_node = 0);
   void look_at_solution();
   void count_tracking(TrackingState state);
   std::uint64_t nearest_node(const Eigen::Vector2d& p_map) const;

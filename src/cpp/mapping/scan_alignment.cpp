@@ -19,7 +19,7 @@ constexpr double kSigma = 0.02;   // [m]
 constexpr double kRobust = 0.04;  // [m]
 
 // Each piece takes part in several pairs of scans, and neighbouring ones share their error.
-constexpr double kShare = 0.1;
+constexpr double kShare = 0.25;
 
 // A direction is open if the information on it is less than this share of what walls across it would give: crooked
 // normals give a corridor's axis about a hundredth. A radian counts as a metre.

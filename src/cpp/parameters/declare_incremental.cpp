@@ -49,11 +49,10 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
   v(p.heading_error_per_meter, "heading_error_per_meter", {0.03, "rad", {0.0, 1.0}},
     "What a matched heading may be off for reasons that no single match shows, such as ranges that are all too long.")
       .own(0.0, "Otherwise long loops in a short-range sensor's map do not close.");
-  v(p.information_scale, "information_scale", {2.0, "", {0.001, 1000.0}},
-    "Log-likelihood of one point that lies on the map: how much a match counts against what odometry expects.")
-      .own(1.0,
-           "Intel with readings cut at 3 m 0.0177 m instead of 0.0259 m. 8 would give honest covariances on simulated "
-           "drives (NEES 2.0 instead of 0.45), but breaks 3 of 50 maps of a sensor that sees 90 degrees.");
+  v(p.information_scale, "information_scale", {1.0, "", {0.001, 1000.0}},
+    "Log-likelihood of one point that lies on the map: how much a match counts against what odometry expects. Low, so "
+    "that a narrow view that fits well somewhere else is not believed.")
+      .own(1.0);
 }
 
 void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
@@ -77,7 +76,9 @@ void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
   v(p.least_learned, "least_learned", {0.2, "", {0.01, 1.0}},
     "How far the standard deviations above may shrink, as a factor, when matches that see all directions keep agreeing "
     "with odometry; they grow (up to 3) when they keep disagreeing. 1: they stay as they are.")
-      .own(1.0, "WHY");
+      .own(1.0,
+           "How good a base is differs much. 25 simulated homes seen with 60 degrees: ATE median 0.079 m instead of "
+           "0.23 m, 1 broken map instead of 7; with 90 degrees 0.032 m instead of 0.037 m.");
 }
 
 void declare_match_filtering(const Section& v, MatchFilteringParameters& p) {
@@ -102,9 +103,12 @@ void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {
   v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").later();
   declare_debug_viewer(v.section("debug_viewer", ParameterStatus::kLater), p.debug_viewer);
   declare_search(v, p);
-  v(p.scanmatch_cov_scale, "scanmatch_cov_scale", {1.0, "", {0.001, 1e6}},
+  v(p.scanmatch_cov_scale, "scanmatch_cov_scale", {0.35, "", {0.001, 1e6}},
     "Factor on the standard deviations of the match's covariance.")
-      .documented(5.0, "Intel 0.0127 m instead of 0.0135 m, and 0.027 m instead of 0.089 m with readings cut at 3 m.");
+      .documented(5.0,
+                  "Makes covariances honest: NEES 2.4 in simulated homes and in views of 90 and 60 degrees, and 0.45 "
+                  "with 1 and information_scale 2. Intel 0.013 m instead of 0.0135 m, and 0.018 m instead of 0.089 m "
+                  "with readings cut at 3 m.");
   v(p.inflate_scanmatch_cov_scale, "inflate_scanmatch_cov_scale", {40.0, "", {0.001, 1e6}},
     "Takes the place of scanmatch_cov_scale for the first link after resume_from_paused.");
   v(p.resume_scanmatch_cov_scale, "resume_scanmatch_cov_scale", {50.0, "", {0.001, 1e6}},
