@@ -184,9 +184,48 @@ TEST_F(LinkTest, OdometryFarOffAGoodMatchContradictsIt) {
   EXPECT_TRUE(contradicts({10.0 * sigma, 0.0, 0.0}));
   EXPECT_TRUE(contradicts({0.0, -10.0 * sigma, 0.0}));
   EXPECT_TRUE(contradicts({0.0, 0.0, 1.0}));
-  EXPECT_FALSE(contradicts({2.1, 0.0, 0.0}));          // is refused
+  EXPECT_TRUE(contradicts({2.1, 0.0, 0.0}));           // refused for this alone
   node.hit_fraction = filter.min_accept_score - 0.01;  // a poor match says nothing against odometry
   EXPECT_FALSE(contradicts({10.0 * sigma, 0.0, 0.0}));
+}
+
+TEST(LearnedOdometry, FollowsHowFarMatchesAreFromIt) {
+  const OdometryModel model{0.1, 0.05, 0.1, 0.15, 0.005, 0.005};
+  const Pose2 step{0.2, 0.0, 0.1};
+  const double sigma = std::sqrt(model.covariance(step)(0, 0));
+  const double sigma_theta = std::sqrt(model.covariance(step)(2, 2));
+  const auto learned = [&](double share, double least) {
+    LearnedOdometry odometry(model, least);
+    for (int k = 0; k < 400; ++k) odometry.learn(step, {share * sigma, -share * sigma, share * sigma_theta});
+    return odometry;
+  };
+  for (const double share : {0.3, 0.5, 2.0}) {
+    const LearnedOdometry odometry = learned(share, 0.2);
+    EXPECT_NEAR(odometry.translation_factor(), share, 0.05 * share);
+    EXPECT_NEAR(odometry.rotation_factor(), share, 0.05 * share);
+    EXPECT_NEAR(odometry.covariance(step)(0, 0), std::pow(odometry.translation_factor() * sigma, 2), 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(learned(0.01, 0.2).translation_factor(), 0.2);  // no base is perfect
+  EXPECT_DOUBLE_EQ(learned(50.0, 0.2).rotation_factor(), 3.0);
+  EXPECT_DOUBLE_EQ(learned(0.01, 1.0).rotation_factor(), 1.0);  // nothing is learned
+}
+
+TEST(LearnedOdometry, ASingleSlipSaysLittle) {
+  LearnedOdometry odometry({0.1, 0.05, 0.1, 0.15, 0.005, 0.005}, 0.2);
+  for (int k = 0; k < 200; ++k) odometry.learn({0.2, 0.0, 0.0}, {0.01, 0.0, 0.01});
+  odometry.learn({0.2, 0.0, 0.0}, {0.8, 0.0, 0.0});
+  EXPECT_LT(odometry.translation_factor(), 0.6);
+}
+
+TEST_F(LinkTest, WhatIsLearnedOfOdometryHoldsUnlessScansSpeakAgainstIt) {
+  set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
+  set_parameter(parameters, "incremental_graph_builder.odometry_noise.least_learned", 0.2);
+  restart();
+  const Eigen::Matrix3d configured = builder.odometry_covariance(motion);
+  for (int k = 0; k < 50; ++k) builder.link({}, motion, node, false);
+  EXPECT_LT(builder.odometry_covariance(motion)(0, 0), 0.5 * configured(0, 0));
+  EXPECT_LT(builder.odometry_covariance(motion, "too few points")(0, 0), 0.5 * configured(0, 0));
+  EXPECT_TRUE(builder.odometry_covariance(motion, "low hits").isApprox(configured));
 }
 
 TEST_F(LinkTest, OdometryThatIsLinkedDoesNotCountTwice) {

@@ -13,6 +13,11 @@
 namespace oort {
 namespace {
 
+// Refusals of matches that are farther from odometry than match_filtering allows.
+constexpr const char* kTooFarX = "x";
+constexpr const char* kTooFarY = "y";
+constexpr const char* kTooFarTheta = "theta";
+
 // Surfaces in the local map are off by this much from one another [m], which turns a scan that sees little of them. Of
 // 60 degree views in simulated homes, links err by 0.014 rad where the returns lie within 0.5 m of their middle.
 constexpr double kSurfaceError = 0.005;
@@ -109,6 +114,11 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
   const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
   link.refusal = refusal(node, T_odometry_match);
+  if (motion_model_ && node.hit_fraction >= kTellingHits &&
+      (link.refusal == kTooFarX || link.refusal == kTooFarY || link.refusal == kTooFarTheta)) {
+    link.contradicts_odometry = true;
+    link.T_anchor_node_weighed = T_anchor_node_odometry;
+  }
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
                                      link.T_anchor_node.translation().norm());
   if (motion_model_ && link.refusal.empty()) {
@@ -127,9 +137,9 @@ std::string IncrementalGraphBuilder::refusal(const TrackedScan& node, const Pose
   const MatchFilteringParameters& filter = parameters_.frsm_matcher.match_filtering;
   if (!node.usable) return node.status;
   if (node.hit_fraction < filter.min_accept_score) return "score";
-  if (T_odometry_match.x < filter.x_min_accept || T_odometry_match.x > filter.x_max_accept) return "x";
-  if (std::abs(T_odometry_match.y) > filter.y_abs_accept) return "y";
-  if (std::abs(T_odometry_match.theta) > filter.theta_abs_accept) return "theta";
+  if (T_odometry_match.x < filter.x_min_accept || T_odometry_match.x > filter.x_max_accept) return kTooFarX;
+  if (std::abs(T_odometry_match.y) > filter.y_abs_accept) return kTooFarY;
+  if (std::abs(T_odometry_match.theta) > filter.theta_abs_accept) return kTooFarTheta;
   return "";
 }
 
@@ -142,8 +152,15 @@ Eigen::Matrix3d IncrementalGraphBuilder::prior_covariance(const Pose2& T_before_
   return Eigen::Vector3d(position, position, 1.0).asDiagonal();
 }
 
-Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_before_after) const {
-  if (motion_model_) return odometry_model_.covariance(T_before_after);
+Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_before_after,
+                                                             const std::string& refusal) const {
+  using frsm::Status;
+  const bool undisputed = refusal.empty() || refusal == frsm::to_string(Status::kEmptyScan) ||
+                          refusal == frsm::to_string(Status::kTooFewPoints) ||
+                          refusal == frsm::to_string(Status::kNoOverlap);
+  if (motion_model_) {
+    return undisputed ? odometry_model_.covariance(T_before_after) : odometry_model_.model().covariance(T_before_after);
+  }
   return Eigen::Vector3d(parameters_.odom_cov_xx, parameters_.odom_cov_yy, parameters_.odom_cov_tt).asDiagonal();
 }
 

@@ -31,7 +31,8 @@ struct MatchLink {
   Eigen::Matrix3d covariance;  ///< along the axes of the anchor
   std::string refusal;         ///< why it is not to be believed; empty when it is
   /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
-  /// constant odometry model, nor of a match that is refused: then odometry is believed.
+  /// constant odometry model, nor of a match that is refused for what it is. Of one that only match_filtering refuses
+  /// odometry's pose counts.
   bool contradicts_odometry = false;
   Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
@@ -65,8 +66,9 @@ class IncrementalGraphBuilder {
   /// Whether odometry has a covariance of its own, that grows with the motion (odometry_model).
   bool knows_odometry() const { return motion_model_; }
 
-  /// Covariance of a motion by odometry alone, along the axes of the frame before.
-  Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after) const;
+  /// Covariance of a motion by odometry alone, along the axes of the frame before. What has been learned of odometry
+  /// holds while scans do not speak against it: with a refusal of what was seen, it is as uncertain as configured.
+  Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after, const std::string& refusal = "") const;
 
  private:
   std::string refusal(const TrackedScan& node, const Pose2& T_odometry_match) const;

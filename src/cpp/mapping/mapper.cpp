@@ -263,11 +263,9 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   if (fresh_local_map_) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
   const bool believed = match.refusal.empty();
   if (!believed || after_gap) {
-    Eigen::Matrix3d covariance = incremental_.odometry_covariance(T_previous_node);
-    if (left_poor_local_map_) {
-      covariance += least_contradiction();
-      tracking_.hang_loosely(node.id, true);
-    }
+    Eigen::Matrix3d covariance = incremental_.odometry_covariance(T_previous_node, match.refusal);
+    if (left_poor_local_map_) covariance += least_contradiction();
+    if (fresh_local_map_) tracking_.hang_loosely(node.id, left_poor_local_map_);
     add_edge(previous.id, T_previous_node, covariance, ConstraintType::kOdometry);
   }
   if (believed) {
