@@ -60,7 +60,7 @@ TEST(Localizer, AToldPoseIsUncertainUntilItIsSeen) {
 
 TEST(Localizer, SaysThatItIsLostInAnotherWorld) {
   Localizer localizer = localizer_of_room();
-  const std::vector<Pose2> truth = testing::laps(1.0);
+  const std::vector<Pose2> truth = testing::laps(0.35);
   localizer.start_at(truth.front() * kMount, kRoughly);
   testing::World other;
   testing::add_outline({{-3.9, -2.9}, {3.5, -3.2}, {4.1, 3.3}, {-3.5, 2.9}}, other);

@@ -32,7 +32,9 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert (tmp_path / "my_map.map_capnp").is_file()
 
 
-@pytest.mark.parametrize("tool", ["replay", "simulate", "evaluate ate", "evaluate relations", "parameters table"])
+@pytest.mark.parametrize(
+    "tool", ["replay", "localize", "simulate", "evaluate ate", "evaluate relations", "parameters table"]
+)
 def test_every_option_is_explained(tool: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main([*tool.split(), "--help"])

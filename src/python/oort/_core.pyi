@@ -348,9 +348,7 @@ class Relocalizer:
 class Localizer:
     """Follows a robot on a map that does not change. Not thread-safe."""
 
-    def __init__(
-        self, map: ReferenceMap, parameters: Parameters, sensor_on_base: _Pose = (0.0, 0.0, 0.0)
-    ) -> None: ...
+    def __init__(self, map: ReferenceMap, parameters: Parameters, sensor_on_base: _Pose = (0.0, 0.0, 0.0)) -> None: ...
     def start_at(self, sensor_on_map: _Pose, covariance: ArrayLike) -> None:
         """Says about where the sensor is at the next scan; the covariance is along the axes of the map."""
     def start_searching(self) -> None:

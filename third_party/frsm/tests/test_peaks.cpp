@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kCell = 0.05, kStep = 0.05;
 
-Table drawn(const Scene& scene, const std::vector<Pose>& from) {
+Table drawn(const test::Scene& scene, const std::vector<Pose>& from) {
   TableParams params;
   params.cell = kCell;
   params.sigma = 0.08;

@@ -17,7 +17,7 @@ struct PeakParams {
   double apart_xy = 0.3;                ///< two poses this near along both axes [m] ...
   double apart_theta = 0.3;             ///< ... and in heading [rad] are one peak
   std::size_t max_peaks = 32;           ///< the search ends with so many
-  std::size_t max_expansions = 400000;  ///< or when so many squares of shifts were cut in four
+  std::size_t max_expansions = 150000;  ///< or when so many squares of shifts were cut in four
 
   /// Throws std::invalid_argument that names the field when a value makes no sense.
   void validate() const;
