@@ -26,6 +26,14 @@ PoseTuple tuple_of(const Pose2& p) {
   return {p.x, p.y, p.theta};
 }
 
+py::array_t<double> array_of(const Eigen::Matrix3d& matrix) {
+  py::array_t<double> array({3, 3});
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) array.mutable_at(row, column) = matrix(row, column);
+  }
+  return array;
+}
+
 py::dict dict_of(const Support& s) {
   py::dict dict;
   dict["points"] = s.points;
@@ -58,7 +66,9 @@ void bind_relocalizer(py::module_& m) {
   py::class_<Hypothesis>(m, "Hypothesis", "A place of the map where scans fit.")
       .def_property_readonly(
           "T_map_sensor", [](const Hypothesis& h) { return tuple_of(h.T_map_sensor); }, "Of the newest scan.")
-      .def_readonly("covariance", &Hypothesis::covariance, "Of x, y, theta, along the axes of the map.")
+      .def_property_readonly(
+          "covariance", [](const Hypothesis& h) { return array_of(h.covariance); },
+          "(3, 3) of x, y, theta, along the axes of the map.")
       .def_property_readonly(
           "support", [](const Hypothesis& h) { return h.support.value(); },
           "Share of the returns that fit, less the share that contradicts.")
@@ -130,7 +140,9 @@ void bind_localizer(py::module_& m) {
       .def_property_readonly(
           "T_map_odom", [](const Localizer& l) { return tuple_of(l.T_map_odom()); },
           "Where odometry's frame is on the map; None while searching.")
-      .def_property_readonly("covariance", &Localizer::covariance, "Of T_map_sensor, along the axes of the map.")
+      .def_property_readonly(
+          "covariance", [](const Localizer& l) { return array_of(l.covariance()); },
+          "(3, 3) of T_map_sensor, along the axes of the map.")
       .def_property_readonly("support", &Localizer::support, "How well the latest scan fitted, at most 1.")
       .def_property_readonly(
           "statistics", [](const Localizer& l) { return dict_of(l.statistics()); }, "Counts since it was made.");

@@ -26,7 +26,7 @@ from oort import Parameters, Session, save_map
 from oort.poses import between, compose
 from oort.recording import Scan
 from oort.ros.messages import rotation, yaw
-from ros.client import until
+from ros.client import Client, until
 from ros.robot import COURSE, Localiser, Robot
 from ros.running import Core, Node
 
@@ -188,6 +188,32 @@ def test_initial_pose_and_search(ros: Core, tmp_path: Path, base: str, ears: Ear
         until(lambda: ears.states[-1:] == ["tracking"], "it is tracking again")
         check(ears)
     initial.unregister()
+
+
+def test_mapping_goes_on_where_the_localizer_sees_the_robot(ros: Core, tmp_path: Path, base: str, ears: Ears) -> None:
+    mapping = Node(ros, "oort_slam", [sys.executable, "-m", "oort.ros"], tmp_path / "oort_slam.log", tmp_path)
+    try:
+        mapping.wait_until(lambda: "is ready" in mapping.output, "it did not say 'is ready'")
+        client = Client(mapping)
+        client.call("map/load", base)
+        assert "start a localiser" in client.refusal("map/resume_here", "")
+        nodes = client.call("map/num_nodes")
+        with localizer(ros, tmp_path, f"_map:={base}", "_start:=dock"), Robot(COURSE) as robot:
+            robot.wait_for_node(f"/{NAME}")
+            robot.wait_for_node("/oort_slam")
+            robot.laser_on = True
+            until(lambda: client.call("graph_loc/is_ready"), "the localiser is heard")
+            client.call("map/resume_here", str(tmp_path / "longer"))
+            robot.laser_on = False
+            robot.drive(COURSE[:40], rate=50.0)
+            count = len(ears.map_to_odom)
+            robot.drive(COURSE[40:60], rate=50.0)
+            assert len(ears.map_to_odom) <= count + 1  # mapping tells it now
+            client.call("map/stop")
+            assert client.call("map/num_nodes") > nodes
+    finally:
+        mapping.stop()
+        print(mapping.output)
 
 
 def test_another_map_is_loaded(ros: Core, tmp_path: Path, base: str) -> None:
