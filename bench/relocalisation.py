@@ -214,7 +214,7 @@ def _follow_figures(
     sensors = compose(true, drive.T_base_sensor), compose(poses, drive.T_base_sensor)
     off = [_off(truth.on_map(where), found) for where, found in zip(*sensors, strict=True)]
     silent = sum(
-        state == "tracking" and (metres > SILENT or turn > SILENT_HEADING)
+        state == "tracking" and bool(metres > SILENT or turn > SILENT_HEADING)
         for (_, _, state), (metres, turn) in zip(known, off, strict=True)
     )
     return {
