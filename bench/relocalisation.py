@@ -168,12 +168,12 @@ def summarise_queries(found: list[dict[str, Any]], none_is_right: bool) -> list[
     ]
     refused = Counter(q["status"] for q in found if q["status"] != "found")
     milliseconds = [ms for q in found for ms in q["ms"]]
-    off = [q["off"][0] for q in answers] or [np.nan]
+    off = [q["off"][0] for q in answers]
     return [
         f"{len(answers)} of {len(found)}",
         f"{wrong[0]} ({wrong[1]})",
         ", ".join(f"{why} {n}" for why, n in sorted(refused.items())) or "-",
-        "-" if none_is_right else f"{1e3 * np.median(off):.0f} / {1e3 * np.percentile(off, 95):.0f}",
+        "-" if none_is_right or not answers else f"{1e3 * np.median(off):.0f} / {1e3 * np.percentile(off, 95):.0f}",
         f"{np.percentile(milliseconds, 50):.0f} / {np.percentile(milliseconds, 99):.0f}",
     ]
 
