@@ -28,19 +28,30 @@ class Recipe:
     field_of_view: int = 180
     """[deg], with one beam per degree"""
     fault: str = "none"
+    way: int = 0
+    moved: int = 0
 
     @property
     def name(self) -> str:
         """A name for people and files that tells one recipe from another."""
         view = f"-fov{self.field_of_view}" if self.field_of_view != 180 else ""
         fault = f"-{self.fault}" if self.fault != "none" else ""
-        return f"{self.scene}-{self.seed}-odo{self.odometry_error:g}{view}{fault}"
+        other = f"-way{self.way}-moved{self.moved}" if self.way or self.moved else ""
+        return f"{self.scene}-{self.seed}-odo{self.odometry_error:g}{view}{fault}{other}"
 
     def config(self) -> SimulationConfig:
         """Drives last from 3 to 7 minutes, by seed."""
         sensor = Sensor(field_of_view=math.radians(self.field_of_view), beams=self.field_of_view)
         minutes = 2.8 + 0.7 * (self.seed % 5)
-        return SimulationConfig(sensor, self.odometry_error, minutes=minutes, scene=self.scene, fault=self.fault)
+        return SimulationConfig(
+            sensor,
+            self.odometry_error,
+            minutes=minutes,
+            scene=self.scene,
+            fault=self.fault,
+            way=self.way,
+            moved=self.moved,
+        )
 
 
 class DriveStore:

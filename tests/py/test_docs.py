@@ -36,6 +36,7 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     "tool",
     [
         "replay",
+        "localize",
         "simulate",
         "evaluate ate",
         "evaluate relations",

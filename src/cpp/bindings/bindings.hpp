@@ -14,5 +14,6 @@ void bind_parameters(pybind11::module_& m);
 void bind_map(pybind11::module_& m);
 void bind_graph(pybind11::module_& m);
 void bind_mapping(pybind11::module_& m);
+void bind_localization(pybind11::module_& m);
 
 }  // namespace oort

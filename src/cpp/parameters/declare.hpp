@@ -79,6 +79,7 @@ void declare_cartographer_matcher(const Section& section, CartographerMatcherPar
 void declare_loop_closure(const Section& section, LoopClosureGraphBuilderParameters& p);
 void declare_branch_and_bound_matcher(const Section& section, BranchAndBoundMatcherParameters& p);
 void declare_dock(const Section& section, DockGraphBuilderParameters& p);
+void declare_localization(const Section& section, LocalizationParameters& p);
 
 /// The three keys that every probability grid has beside its resolution.
 void declare_grid_probabilities(const Section& section, ProbabilityGridParameters& p, bool insert_free_space);

@@ -234,6 +234,34 @@ struct DockGraphBuilderParameters {
   double search_window_theta;
 };
 
+/// Finding the robot on a map without a guess.
+struct RelocalizerParameters {
+  int max_scans;
+  double scan_distance;
+  double scan_angle;
+  int min_points;
+  double min_support;
+  double min_lead;
+  double max_position_deviation;
+  double max_heading_deviation;
+};
+
+/// Following the robot on a map.
+struct TrackingParameters {
+  double search_window_xy;
+  double search_window_theta;
+  double min_support;
+  double uncertain_deviation;
+  double lost_deviation;
+  double doubt_distance;
+};
+
+/// Localisation on a map that does not change.
+struct LocalizationParameters {
+  RelocalizerParameters relocalizer;
+  TrackingParameters tracking;
+};
+
 struct Parameters {
   Parameters();  ///< every value at its default in the table
 
@@ -250,6 +278,7 @@ struct Parameters {
   IncrementalGraphBuilderParameters incremental_graph_builder;
   LoopClosureGraphBuilderParameters loop_closure_graph_builder;
   DockGraphBuilderParameters dock_graph_builder;
+  LocalizationParameters localization;
 };
 
 }  // namespace oort

@@ -19,6 +19,7 @@ std::vector<DeclaredParameter> declare(Parameters& p) {
   declare_incremental(root.section("incremental_graph_builder"), p.incremental_graph_builder);
   declare_loop_closure(root.section("loop_closure_graph_builder"), p.loop_closure_graph_builder);
   declare_dock(root.section("dock_graph_builder"), p.dock_graph_builder);
+  declare_localization(root.section("localization"), p.localization);
   return rows;
 }
 

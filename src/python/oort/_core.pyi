@@ -317,6 +317,100 @@ class Mapper:
     def closure_attempts(self) -> list[tuple[int, int, str, _Pose, float]]:
         """(query node, candidate node, reason of the refusal or "", T_candidate_query, hit fraction) of each kept."""
 
+class PlacedScan:
+    """A scan and where odometry saw it."""
+
+    def __init__(
+        self,
+        time: float,
+        angle_min: float,
+        angle_increment: float,
+        range_min: float,
+        range_max: float,
+        ranges: ArrayLike,
+        sensor_in_odom: _Pose,
+    ) -> None: ...
+
+class ReferenceMap:
+    """A saved map made ready to find a robot on it."""
+
+    def __init__(self, map: Map, parameters: Parameters) -> None:
+        """Raises InputError if the map is empty or contradicts itself."""
+
+class Hypothesis:
+    """A place of the map where scans fit."""
+
+    @property
+    def T_map_sensor(self) -> _Pose:  # noqa: N802
+        """Of the newest scan."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """(3, 3) of x, y, theta, along the axes of the map."""
+    @property
+    def support(self) -> float:
+        """Share of the returns that fit, less the share that contradicts."""
+    @property
+    def counts(self) -> dict[str, int]:
+        """What the support is made of."""
+
+class Relocalization:
+    """What a search without a guess found."""
+
+    @property
+    def status(self) -> str:
+        """found, or why not: too_few_points, no_match, low_support, ambiguous, imprecise."""
+    @property
+    def best(self) -> Hypothesis | None:
+        """The answer, or what was refused; None if nothing fits."""
+    @property
+    def second(self) -> Hypothesis | None:
+        """The next place apart from it, or None."""
+
+class Relocalizer:
+    """Finds the robot on a map without a guess. Thread-safe."""
+
+    def __init__(self, map: ReferenceMap, parameters: Parameters) -> None: ...
+    def find(self, scans: Sequence[PlacedScan]) -> Relocalization:
+        """Looks for one or a few scans, oldest first, joined by odometry; the answer is the newest one's pose."""
+
+class Localizer:
+    """Follows a robot on a map that does not change. Not thread-safe."""
+
+    def __init__(self, map: ReferenceMap, parameters: Parameters, sensor_on_base: _Pose = (0.0, 0.0, 0.0)) -> None: ...
+    def start_at(self, sensor_on_map: _Pose, covariance: ArrayLike) -> None:
+        """Says about where the sensor is at the next scan; the covariance is along the axes of the map."""
+    def start_searching(self) -> None:
+        """Forgets the pose."""
+    def add_scan(
+        self,
+        time: float,
+        angle_min: float,
+        angle_increment: float,
+        range_min: float,
+        range_max: float,
+        ranges: ArrayLike,
+        odometry: _Pose,
+    ) -> None:
+        """Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then."""
+    @property
+    def state(self) -> str:
+        """searching, tracking, uncertain or lost."""
+    @property
+    def T_map_sensor(self) -> _Pose | None:  # noqa: N802
+        """The sensor's pose at the latest scan; None while searching."""
+    @property
+    def T_map_odom(self) -> _Pose | None:  # noqa: N802
+        """Where odometry's frame is on the map; None while searching."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """(3, 3) of T_map_sensor, along the axes of the map."""
+    @property
+    def support(self) -> float:
+        """How well the latest scan fitted, at most 1."""
+    @property
+    def statistics(self) -> dict[str, Any]:
+        """Counts since it was made."""
+
 def parameter_table() -> list[ParameterEntry]:
     """Every parameter once, in the order of params.json."""
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 _TOOLS = {
     "replay": "map a recorded drive",
+    "localize": "follow a recorded drive on a saved map",
     "render": "draw a saved map as pictures for map_server",
     "simulate": "make up a home and a drive through it",
     "evaluate": "compare a trajectory with what is known to be true",

@@ -12,10 +12,11 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from oort._core import Parameters, normalise_map_path
+from oort._core import Parameters, load_map, normalise_map_path
 from oort.attempts import MOST
 from oort.errors import InputError, OortError
 from oort.events import Event, read_events
+from oort.localization import find_start
 from oort.parameters import read_parameters
 from oort.recording import Pose, Recording, Scan, open_recording
 from oort.report import Stopwatch, format_table
@@ -112,6 +113,11 @@ def _until(scans: Iterator[Scan], seconds: float | None) -> Iterator[Scan]:
         yield scan
 
 
+def scans_with_progress(recording: Recording, quiet: bool) -> Iterator[Scan]:
+    """The scans of a recording, with signs of life on standard error unless quiet."""
+    return _progress(recording.scans(), recording, quiet)
+
+
 def _progress(scans: Iterator[Scan], recording: Recording, quiet: bool) -> Iterator[Scan]:
     """A bar on a terminal; a plain line now and then elsewhere."""
     if quiet:
@@ -168,9 +174,13 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>)")
     parser.add_argument("--map", metavar="BASE", help="base path of the saved map (default: DIR/map)")
-    parser.add_argument("--resume", metavar="BASE", help="a saved map to go on with; needs --pose")
+    parser.add_argument("--resume", metavar="BASE", help="a saved map to go on with")
     parser.add_argument(
-        "--pose", type=float, nargs=3, metavar=("X", "Y", "THETA"), help="the sensor's pose in it at the start [m, rad]"
+        "--pose",
+        type=float,
+        nargs=3,
+        metavar=("X", "Y", "THETA"),
+        help="the sensor's pose in it at the start [m, rad]; searched for if not given",
     )
     parser.add_argument("--events", metavar="FILE", help="the service calls of the drive, a JSON list of t, call, args")
     parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
@@ -187,9 +197,13 @@ def _run(args: argparse.Namespace) -> None:
     recording = open_recording(
         args.input, scan_topic=args.scan_topic, odom_frame=args.odom_frame, max_range=args.max_range
     )
+    resume = None
+    if args.resume:
+        pose = tuple(args.pose) if args.pose else find_start(load_map(args.resume), parameters, recording)
+        resume = args.resume, pose
     options = ReplayOptions(
         events=events,
-        resume=(args.resume, tuple(args.pose)) if args.resume else None,
+        resume=resume,
         until=args.until,
         quiet=args.quiet,
         keep_attempts=args.closures,
@@ -201,8 +215,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """The command line tool; exit code 2 for an input or a call that cannot be used."""
     parser = _parser()
     args = parser.parse_args(argv)
-    if (args.resume is None) != (args.pose is None):
-        parser.error("--resume and --pose go together: a map needs to know about where the robot starts")
+    if args.resume is None and args.pose is not None:
+        parser.error("--pose is where the robot starts on the map of --resume, which is missing")
     try:
         _run(args)
     except OortError as error:

@@ -22,6 +22,7 @@ SERVICES = {
     "map/start": srv.SetString,
     "map/load": srv.SetString,
     "map/resume": srv.MapResume,
+    "map/resume_here": srv.SetString,
     "map/notify_docked": Empty,
     "map/pause": Empty,
     "map/resume_from_paused": Empty,

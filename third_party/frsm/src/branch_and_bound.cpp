@@ -19,20 +19,6 @@ struct Node {
   double bound = 0.0;     // of the objective
 };
 
-std::uint32_t sum_values(const TableView& view, const std::vector<Cell>& cells, int ix, int iy) {
-  const int shift_x = ix - view.x0;
-  const int shift_y = iy - view.y0;
-  const auto width = static_cast<unsigned>(view.width);
-  const auto height = static_cast<unsigned>(view.height);
-  std::uint32_t sum = 0;
-  for (const Cell& cell : cells) {
-    const auto column = static_cast<unsigned>(cell.x + shift_x);  // below zero wraps to beyond the width
-    const auto row = static_cast<unsigned>(cell.y + shift_y);
-    if (column < width && row < height) sum += view.data[row * view.stride + column];
-  }
-  return sum;
-}
-
 // The distance from a value to an interval.
 double gap(double value, double low, double high) {
   return std::max({0.0, low - value, value - high});

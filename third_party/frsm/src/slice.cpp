@@ -33,6 +33,20 @@ void to_cells(const Table& table, const Points& body, const Pose& pose, std::vec
   }
 }
 
+std::uint32_t sum_values(const TableView& view, const std::vector<Cell>& cells, int ix, int iy) {
+  const int shift_x = ix - view.x0;
+  const int shift_y = iy - view.y0;
+  const auto width = static_cast<unsigned>(view.width);
+  const auto height = static_cast<unsigned>(view.height);
+  std::uint32_t sum = 0;
+  for (const Cell& cell : cells) {
+    const auto column = static_cast<unsigned>(cell.x + shift_x);  // below zero wraps to beyond the width
+    const auto row = static_cast<unsigned>(cell.y + shift_y);
+    if (column < width && row < height) sum += view.data[row * view.stride + column];
+  }
+  return sum;
+}
+
 Slice::Slice(int nx, int ny)
     : nx_(nx),
       ny_(ny),

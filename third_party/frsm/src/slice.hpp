@@ -17,6 +17,9 @@ struct Cell {
 /// The cells of a scan's points under a pose; rounded once, so that shifts of the pose by whole cells shift the cells.
 void to_cells(const Table& table, const Points& body, const Pose& pose, std::vector<Cell>* cells);
 
+/// Sum of the table's values under a scan that is shifted by whole cells.
+std::uint32_t sum_values(const TableView& table, const std::vector<Cell>& cells, int ix, int iy);
+
 /// Sums of the table's values under a scan, for all shifts by -nx .. nx and -ny .. ny cells.
 class Slice {
  public:

@@ -77,6 +77,17 @@ class Places:
             raise StateError(f"graph_loc/locate: no place {name_space!r}/{id!r}; graph_loc/list shows the known ones")
         return snapshot.places[place]
 
+    def here(self, call: str) -> Pose:
+        """T_map_sensor as a localiser tells it. Raises StateError, naming the call that needs it, if none does."""
+        pose = self._localiser()
+        if pose is None:
+            raise StateError(
+                f"{call}: nothing is being mapped, and there is no fresh transform from map to sensor; start a "
+                "localiser and wait until graph_loc/is_ready is true"
+            )
+        x, y, theta = map(float, pose)  # what goes into the events log
+        return x, y, theta
+
     def _pose(self) -> Pose | None:
         """T_map_sensor for a place that is created now; None: mapping will know. Raises StateError."""
         snapshot = self._snapshot()
@@ -91,14 +102,7 @@ class Places:
             raise StateError(f"{_CREATE}: mapping is paused; call map/resume_from_paused first")
         if snapshot.num_nodes == 0:
             raise StateError(f"{_CREATE}: there is no map; call map/start or map/load first")
-        pose = self._localiser()
-        if pose is None:
-            raise StateError(
-                f"{_CREATE}: nothing is being mapped, and there is no fresh transform from map to sensor; start a "
-                "localiser and wait until graph_loc/is_ready is true"
-            )
-        x, y, theta = map(float, pose)  # what goes into the events log
-        return x, y, theta
+        return self.here(_CREATE)
 
     def _made_late(self, place: tuple[str, str], future: "Future[Answer]") -> None:
         self._forget_request(place)

@@ -25,6 +25,7 @@ class Services:
         self._offer("map/start", srv.SetString, self._start)
         self._offer("map/load", srv.SetString, self._load)
         self._offer("map/resume", srv.MapResume, self._resume)
+        self._offer("map/resume_here", srv.SetString, self._resume_here)
         self._offer("map/state", srv.GetString, lambda _: srv.GetStringResponse(live.snapshot.state.value))
         self._offer("map/name", srv.GetString, lambda _: srv.GetStringResponse(live.snapshot.path))
         self._offer("map/has_map", srv.GetBool, lambda _: srv.GetBoolResponse(live.has_map))
@@ -76,6 +77,11 @@ class Services:
         pose = request.pose
         self._live.call("map/resume", [request.new_map_loc, [pose.x, pose.y, pose.theta]])
         return srv.MapResumeResponse()
+
+    def _resume_here(self, request: srv.SetStringRequest) -> srv.SetStringResponse:
+        """map/resume from where a localiser sees the robot."""
+        self._live.call("map/resume", [request.data, list(self._live.places.here("map/resume_here"))])
+        return srv.SetStringResponse()
 
     def _map(self, _: srv.GetMapRequest) -> FastMapResponse:
         drawing = self._live.gallery.latest(self._live.snapshot.revision)

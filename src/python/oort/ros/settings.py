@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""The node's private ROS parameters: ~params, ~load, ~events_log, and any parameter of params.json by its path."""
+"""The nodes' private ROS parameters: a few of their own, and any parameter of params.json by its path."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,6 @@ from oort._core import Parameters
 from oort.errors import ParameterError
 from oort.parameters import read_parameters
 from oort.parameters.reader import unknown_parameter
-
-_OWN = ("params", "load", "events_log")
 
 
 @dataclass(frozen=True)
@@ -29,11 +27,20 @@ class Settings:
 
 def read_settings() -> Settings:
     """Reads the private parameters. Raises ParameterError for one that is unknown, naming the nearest known one."""
+    parameters, own = read_private(["load", "events_log"])
+    return Settings(parameters, own["load"], own["events_log"])
+
+
+def read_private(names: Sequence[str]) -> tuple[Parameters, dict[str, str]]:
+    """The parameters of params.json, and the texts of a node's own private parameters, empty where not given.
+
+    Raises ParameterError for a private parameter that is unknown, naming the nearest known one.
+    """
     private = rospy.get_param("~", {})
-    own = {name: private.pop(name, "") for name in _OWN}
+    own = {name: private.pop(name, "") for name in ["params", *names]}
     for name, value in own.items():
         if not isinstance(value, str):
-            raise ParameterError(f"~{name} must be a path, not {value!r}")
+            raise ParameterError(f"~{name} must be a text, such as a path, not {value!r}")
     parameters = read_parameters(own["params"] or None)
     known = parameters.to_dict()
     for path, value in _flatten(private):
@@ -45,7 +52,7 @@ def read_settings() -> Settings:
             name = rospy.resolve_name("~" + path.replace(".", "/"))
             raise ParameterError(f"ROS parameter {name}: {error}") from error
     parameters.check()
-    return Settings(parameters, own["load"], own["events_log"])
+    return parameters, own
 
 
 def _flatten(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

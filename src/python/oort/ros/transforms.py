@@ -133,6 +133,12 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         translation, rotation = transform.transform.translation, transform.transform.rotation
         return translation.x, translation.y, yaw(rotation)
 
+    def is_localised(self) -> bool:
+        """Whether another program says now where odometry's frame is on the map."""
+        with self._lock:
+            told = self._localised.get(self._odom)
+            return told is not None and time.monotonic() <= told + _SILENCE
+
     # ---- what comes in ----
 
     def _note(self, transform: TransformStamped, moving: bool) -> bool:

@@ -24,7 +24,14 @@ def main(argv: Sequence[str] | None = None) -> int:
             range_max=arguments.max_range,
         )
         config = SimulationConfig(
-            sensor, arguments.odometry_error, arguments.person, arguments.minutes, arguments.scene, arguments.fault
+            sensor,
+            arguments.odometry_error,
+            arguments.person,
+            arguments.minutes,
+            arguments.scene,
+            arguments.fault,
+            arguments.way,
+            arguments.moved,
         )
         drive = simulate_drive(arguments.seed, config)
         name = arguments.name or f"{arguments.scene}_{arguments.seed}"
@@ -55,6 +62,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--max-range", type=float, default=3.0, metavar="M", help="metres that the sensor sees")
     parser.add_argument("--minutes", type=float, default=3.0, help="drive on after the tour until about then")
     parser.add_argument("--no-person", dest="person", action="store_false", help="nobody crosses the view")
+    parser.add_argument("--way", type=int, default=0, metavar="N", help="another drive through the same home")
+    parser.add_argument("--moved", type=int, default=0, metavar="N", help="pieces of furniture moved since drive 0")
     parser.add_argument("--picture", action=argparse.BooleanOptionalAction, default=True, help="write a PNG too")
     return parser
 

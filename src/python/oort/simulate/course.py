@@ -47,16 +47,18 @@ def tour_home(
     minutes: float,
     rng: np.random.Generator,
     carrying: np.random.Generator | None = None,
+    roam: bool = False,
 ) -> Course:
     """From the dock along a tour, with halts and looks around here and there, and backwards onto the dock.
 
-    With ``carrying`` somebody carries the robot to a place nearby once, about halfway.
+    With ``carrying`` somebody carries the robot to a place nearby once, about halfway. With ``roam`` the places are
+    other ones for each ``rng``, and their order is random, not short.
     """
-    places = find_places(plan, grid, transform(home.dock, [DOCK_FRONT, 0.0]))
+    places = find_places(plan, grid, transform(home.dock, [DOCK_FRONT, 0.0]), rng if roam else None)
     driver = Driver(home.dock, places.grid)
     driver.wait(DOCKED)
     driver.follow(_straight(home.dock), float(rng.uniform(*CRUISE)))
-    tour = plan_tour(places, 60.0 * minutes * MEAN_SPEED, rng)
+    tour = plan_tour(places, 60.0 * minutes * MEAN_SPEED, rng, roam)
     stretch: list[Array] = []
     carried = None
     for number, (start, goal) in enumerate(pairwise(tour), start=1):

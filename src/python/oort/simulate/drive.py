@@ -12,7 +12,7 @@ from oort.simulate import faults, person
 from oort.simulate.alike import make_alike_home
 from oort.simulate.course import DOCKED, Course, drive_corridor, tour_home
 from oort.simulate.driver import STEP
-from oort.simulate.home import Home, make_home
+from oort.simulate.home import Home, furnish_home, make_home
 from oort.simulate.odometry import simulate_odometry
 from oort.simulate.planar import transform
 from oort.simulate.sensor import Sensor, cast_drive, measure
@@ -44,6 +44,12 @@ class SimulationConfig:
     fault: str = "none"
     """One of FAULTS, which happens once: odometry freezes for 2 s and then jumps to where it would be, a bump makes it
     slip by 0.2 m and 20 degrees, or somebody carries the robot 1 m while the wheels stand still."""
+    way: int = 0
+    """Another drive through the same home: beyond 0 the robot visits other places in a random order, and people,
+    odometry and sensor err anew. The map frames of a home's drives are the same, since all begin on the dock."""
+    moved: int = 0
+    """Up to so many pieces of furniture stand elsewhere in their rooms than on drives where it is 0; which ones follows
+    from ``way``."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
@@ -57,6 +63,10 @@ class SimulationConfig:
             raise ValueError(f"fault {self.fault!r}: choose one of {', '.join(FAULTS)}")
         if self.fault == "carried" and self.in_corridor:
             raise ValueError("nobody carries the robot in the corridor: choose another fault or scene")
+        if self.way < 0 or self.moved < 0:
+            raise ValueError(f"way {self.way}, {self.moved} pieces moved: choose whole numbers from 0")
+        if self.scene != "home" and self.moved > 0:
+            raise ValueError(f"scene {self.scene!r}: furniture is moved in scene 'home' only")
 
     @property
     def in_corridor(self) -> bool:
@@ -168,8 +178,7 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
     config = config or SimulationConfig()
     if seed < 0:
         raise ValueError(f"seed {seed}: choose a whole number from 0")
-    streams = [np.random.Generator(np.random.PCG64(s)) for s in np.random.SeedSequence(seed).spawn(6)]
-    home_rng, way_rng, person_rng, odometry_rng, sensor_rng, fault_rng = streams
+    home_rng, way_rng, person_rng, odometry_rng, sensor_rng, fault_rng = _streams(seed, config.way)
     course = _make_course(config, home_rng, way_rng, fault_rng)
     whole = course.motion.steps.shape[0] // STEPS_PER_SCAN * STEPS_PER_SCAN  # the last step is the last scan's
     all_poses, steps = course.motion.poses[: whole + 1], course.motion.steps[:whole]
@@ -207,6 +216,14 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
     )
 
 
+def _streams(seed: int, way: int) -> list[Rng]:
+    """The random streams of a drive: the home's is the seed's, the others are the seed's and the way's."""
+    sequences = np.random.SeedSequence(seed).spawn(6)
+    if way > 0:
+        sequences[1:] = np.random.SeedSequence([seed, way]).spawn(5)
+    return [np.random.Generator(np.random.PCG64(sequence)) for sequence in sequences]
+
+
 def _seconds(stamps: npt.NDArray[np.int64], steps: tuple[int, int]) -> tuple[float, float]:
     return float(stamps[steps[0]] / 1e9), float(stamps[steps[1]] / 1e9)
 
@@ -217,8 +234,14 @@ _ODOMETRY_FAULTS = {"freeze": faults.freeze, "bump": faults.bump}
 def _make_course(config: SimulationConfig, home_rng: Rng, way_rng: Rng, fault_rng: Rng) -> Course:
     if config.in_corridor:
         return drive_corridor(config.scene == "corridor-return", way_rng)
-    made = (make_alike_home if config.scene == "alike" else make_home)(home_rng)
-    course = tour_home(*made, config.minutes, way_rng, fault_rng if config.fault == "carried" else None)
+    if config.moved > 0:
+        furnisher = furnish_home(home_rng)
+        furnisher.rearrange(config.moved, way_rng.spawn(1)[0])
+        made = furnisher.home(), furnisher.plan, furnisher.grid
+    else:
+        made = (make_alike_home if config.scene == "alike" else make_home)(home_rng)
+    carrying = fault_rng if config.fault == "carried" else None
+    course = tour_home(*made, config.minutes, way_rng, carrying, roam=config.way > 0)
     if config.fault == "carried" and course.carried is None:
         raise ValueError("the robot comes to no place that it could be carried from: choose another seed")
     return course

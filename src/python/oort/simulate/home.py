@@ -22,6 +22,7 @@ DOCK_SIZE = (0.32, 0.08)  # width, depth
 DOCK_TO_BASE = 0.17  # m from the dock's front to the base's centre when docked
 DOCK_FRONT = 0.75  # m from the docked base to the place from which the robot backs on
 TRIES = 15  # places tried for one piece
+SHIFT = (0.3, 1.5)  # m that a piece is moved when a home is rearranged
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,13 +73,17 @@ class Home:
 
 def make_home(rng: np.random.Generator) -> tuple[Home, FloorPlan, ClearanceGrid]:
     """Draw a home in its plan's frame, with its plan and its free space."""
+    builder = furnish_home(rng)
+    return builder.home(), builder.plan, builder.grid
+
+
+def furnish_home(rng: np.random.Generator) -> "Furnisher":
+    """Draw a home; the furnisher can still move things in it."""
     while True:
-        plan = make_floor_plan(rng)
-        builder = Furnisher(plan, rng)
-        if not builder.place_dock():
-            continue
-        builder.furnish()
-        return builder.home(), plan, builder.grid
+        builder = Furnisher(make_floor_plan(rng), rng)
+        if builder.place_dock():
+            builder.furnish()
+            return builder
 
 
 def wall_segments(plan: FloorPlan) -> Array:
@@ -110,6 +115,10 @@ def _between(low: float, high: float, gaps: Sequence[tuple[float, float]]) -> It
     yield low, high
 
 
+def _holds(rect: Rect, point: Array) -> bool:
+    return bool(rect.x0 <= point[0] <= rect.x1 and rect.y0 <= point[1] <= rect.y1)
+
+
 class Furnisher:
     """Puts pieces into the rooms of a plan, one by one, and keeps every doorway reachable."""
 
@@ -117,14 +126,7 @@ class Furnisher:
         """Start with the bare walls of ``plan``."""
         self.plan, self.rng = plan, rng
         self._walls = wall_segments(plan)
-        rects = [room.rect for room in plan.rooms]
-        bounds = Rect(
-            min(r.x0 for r in rects), min(r.y0 for r in rects), max(r.x1 for r in rects), max(r.y1 for r in rects)
-        )
-        self.grid = ClearanceGrid(bounds.grown(0.3, 0.3))
-        for rect in [*rects, *(doorway.gap for doorway in plan.doorways)]:
-            self.grid.open_rect(rect)
-        self.grid.block_segments(self._walls)
+        self.grid = self._empty_grid()
         self.pieces: list[Piece] = []
         self.dock = np.zeros(3)
         self._kept_free = [
@@ -176,6 +178,15 @@ class Furnisher:
             if self.rng.random() < wish.chance:
                 self._place(index, wish)
 
+    def rearrange(self, count: int, rng: np.random.Generator) -> None:
+        """Shift up to ``count`` pieces of furniture, chosen at random, along a wall by 0.3 m to 1.5 m, where they fit.
+
+        The dock, doors and corners stay, and every room stays reachable.
+        """
+        movable = [piece for piece in self.pieces if piece.name not in ("dock", "door leaf", "corner wall")]
+        for number in rng.permutation(len(movable))[:count]:
+            self._shift(movable[int(number)], rng)
+
     def put(self, piece: Piece) -> None:
         """Put a piece where it is, whatever it blocks."""
         self.grid.block_polygon(piece.footprint)
@@ -192,6 +203,33 @@ class Furnisher:
             np.vstack([piece.discs for piece in self.pieces]),
             self.dock,
         )
+
+    def _shift(self, piece: Piece, rng: np.random.Generator) -> None:
+        """Take a piece away and put it down elsewhere in its room, or back."""
+        centre = piece.footprint.mean(axis=0)
+        index = next(i for i, room in enumerate(self.plan.rooms) if _holds(room.rect, centre))
+        others = [other for other in self.pieces if other is not piece]
+        self.grid = self._empty_grid()
+        self.pieces = []
+        for other in others:
+            self.put(other)
+        for _ in range(TRIES):
+            shift = [0.0, 0.0, 0.0]
+            shift[int(rng.integers(2))] = float(rng.choice([-1.0, 1.0]) * rng.uniform(*SHIFT))
+            if self._try(index, piece.moved(shift)):
+                return
+        self.put(piece)
+
+    def _empty_grid(self) -> ClearanceGrid:
+        rects = [room.rect for room in self.plan.rooms]
+        bounds = Rect(
+            min(r.x0 for r in rects), min(r.y0 for r in rects), max(r.x1 for r in rects), max(r.y1 for r in rects)
+        )
+        grid = ClearanceGrid(bounds.grown(0.3, 0.3))
+        for rect in [*rects, *(doorway.gap for doorway in self.plan.doorways)]:
+            grid.open_rect(rect)
+        grid.block_segments(self._walls)
+        return grid
 
     def _place(self, index: int, wish: furniture.Wish) -> None:
         piece = wish.make(self.rng)

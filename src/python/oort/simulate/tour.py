@@ -13,6 +13,7 @@ from oort.simulate.free_space import BoolArray, Cell, ClearanceGrid, Routes, fin
 VIEW = 1.4  # m; floor within this distance of a visited place counts as seen
 UNSEEN = 0.1  # part of a room's floor that may stay unseen
 ROOMY = 0.3  # m of clearance at a visited place
+CONSIDERED = 0.05  # part of the floor that a roaming robot may choose places from
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,22 +34,30 @@ class Places:
         return np.array([routes.cost[rows, columns] for routes in self.routes])
 
 
-def find_places(plan: FloorPlan, grid: ClearanceGrid, dock_front: Array) -> Places:
-    """Choose, room by room, few places such that nearly all reachable floor is near one of them."""
+def find_places(
+    plan: FloorPlan, grid: ClearanceGrid, dock_front: Array, rng: np.random.Generator | None = None
+) -> Places:
+    """Choose, room by room, few places such that nearly all reachable floor is near one of them.
+
+    With ``rng`` only a random part of the floor is considered, so that each time other places are chosen.
+    """
     start = grid.cell(float(dock_front[0]), float(dock_front[1]))
     from_dock = find_routes(grid, start)
     reachable = np.isfinite(from_dock.cost)
     cells = [start]
     for room in plan.rooms:
-        cells += [cell for cell in _cover(grid, reachable & grid.inside(room.rect)) if cell != start]
+        stands = grid.clearance >= ROOMY
+        if rng is not None:
+            stands &= rng.random(stands.shape) < CONSIDERED
+        cells += [cell for cell in _cover(grid, reachable & grid.inside(room.rect), stands) if cell != start]
     routes = [from_dock, *(find_routes(grid, cell) for cell in cells[1:])]
     return Places(grid, tuple(cells), tuple(routes))
 
 
-def _cover(grid: ClearanceGrid, floor: BoolArray) -> list[Cell]:
-    """Greedy cover of a room's floor; of places that see as much, the one with the most clearance."""
+def _cover(grid: ClearanceGrid, floor: BoolArray, allowed: BoolArray) -> list[Cell]:
+    """Greedy cover of a room's floor from allowed places; of those that see as much, the one of most clearance."""
     seen_from = np.argwhere(floor)
-    candidates = np.argwhere(floor & (grid.clearance >= ROOMY))
+    candidates = np.argwhere(floor & allowed)
     if not len(candidates):
         return []
     points = np.array([grid.point((row, column)) for row, column in seen_from.tolist()])
@@ -67,10 +76,16 @@ def _cover(grid: ClearanceGrid, floor: BoolArray) -> list[Cell]:
     return chosen
 
 
-def plan_tour(places: Places, least_length: float, rng: np.random.Generator) -> list[int]:
-    """Order of places from the dock to the dock: a short round trip, then random places up to a length [m]."""
+def plan_tour(places: Places, least_length: float, rng: np.random.Generator, roam: bool = False) -> list[int]:
+    """Order of places from the dock to the dock: a short round trip, then random places up to a length [m].
+
+    With ``roam`` the round trip, too, is in a random order.
+    """
     cost = places.distances()
-    tour = _two_opt(cost, _nearest_neighbours(cost))
+    if roam:
+        tour = [0, *(1 + rng.permutation(len(places.cells) - 1)).tolist(), 0]
+    else:
+        tour = _two_opt(cost, _nearest_neighbours(cost))
     length = float(cost[tour[:-1], tour[1:]].sum())
     end = tour.pop()
     while length < least_length and len(places.cells) > 2:

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+#include "oort/bindings/bindings.hpp"
+#include "oort/localization/localizer.hpp"
+#include "oort/localization/relocalizer.hpp"
+
+namespace py = pybind11;
+
+namespace oort {
+namespace {
+
+using PoseTuple = std::tuple<double, double, double>;
+using Ranges = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+Pose2 pose_of(const PoseTuple& t) {
+  return {std::get<0>(t), std::get<1>(t), std::get<2>(t)};
+}
+PoseTuple tuple_of(const Pose2& p) {
+  return {p.x, p.y, p.theta};
+}
+
+py::array_t<double> array_of(const Eigen::Matrix3d& matrix) {
+  py::array_t<double> array({3, 3});
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) array.mutable_at(row, column) = matrix(row, column);
+  }
+  return array;
+}
+
+py::dict dict_of(const Support& s) {
+  py::dict dict;
+  dict["points"] = s.points;
+  dict["hits"] = s.hits;
+  dict["blocked"] = s.blocked;
+  dict["in_free"] = s.in_free;
+  dict["surfaces"] = s.surfaces;
+  dict["turned"] = s.turned;
+  return dict;
+}
+
+PlacedScan placed_scan(double time, double angle_min, double angle_increment, double range_min, double range_max,
+                       const Ranges& ranges, const PoseTuple& T_odom_sensor) {
+  return {to_point_cloud({time, angle_min, angle_increment, range_min, range_max,
+                          std::vector<float>(ranges.data(), ranges.data() + ranges.size())}),
+          pose_of(T_odom_sensor)};
+}
+
+void bind_reference(py::module_& m) {
+  py::class_<PlacedScan>(m, "PlacedScan", "A scan and where odometry saw it.")
+      .def(py::init(&placed_scan), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
+           py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("sensor_in_odom"));
+  py::class_<ReferenceMap, std::shared_ptr<ReferenceMap>>(m, "ReferenceMap",
+                                                          "A saved map made ready to find a robot on it.")
+      .def(py::init<const Map&, const Parameters&>(), py::arg("map"), py::arg("parameters"),
+           py::call_guard<py::gil_scoped_release>(), "Raises InputError if the map is empty or contradicts itself.");
+}
+
+void bind_relocalizer(py::module_& m) {
+  py::class_<Hypothesis>(m, "Hypothesis", "A place of the map where scans fit.")
+      .def_property_readonly(
+          "T_map_sensor", [](const Hypothesis& h) { return tuple_of(h.T_map_sensor); }, "Of the newest scan.")
+      .def_property_readonly(
+          "covariance", [](const Hypothesis& h) { return array_of(h.covariance); },
+          "(3, 3) of x, y, theta, along the axes of the map.")
+      .def_property_readonly(
+          "support", [](const Hypothesis& h) { return h.support.value(); },
+          "Share of the returns that fit, less the share that contradicts.")
+      .def_property_readonly(
+          "counts", [](const Hypothesis& h) { return dict_of(h.support); }, "What the support is made of.");
+  py::class_<Relocalization>(m, "Relocalization", "What a search without a guess found.")
+      .def_property_readonly(
+          "status", [](const Relocalization& r) { return std::string(to_string(r.status)); },
+          "\"found\", or why not: \"too_few_points\", \"no_match\", \"low_support\", \"ambiguous\", \"imprecise\".")
+      .def_readonly("best", &Relocalization::best, "The answer, or what was refused; None if nothing fits.")
+      .def_readonly("second", &Relocalization::second, "The next place apart from it, or None.");
+  py::class_<Relocalizer>(m, "Relocalizer", "Finds the robot on a map without a guess. Thread-safe.")
+      .def(py::init([](const std::shared_ptr<ReferenceMap>& map, const Parameters& parameters) {
+             return std::make_unique<Relocalizer>(map, parameters);
+           }),
+           py::arg("map"), py::arg("parameters"))
+      .def("find", &Relocalizer::find, py::arg("scans"), py::call_guard<py::gil_scoped_release>(),
+           "Looks for one or a few scans, oldest first, joined by odometry; the answer is the newest one's pose.");
+}
+
+py::dict dict_of(const LocalizationStatistics& s) {
+  py::dict dict;
+  dict["scans"] = s.scans;
+  dict["matched"] = s.matched;
+  dict["searches"] = s.searches;
+  dict["jumps"] = s.jumps;
+  dict["match_refusals"] = py::cast(s.match_refusals);
+  dict["search_refusals"] = py::cast(s.search_refusals);
+  return dict;
+}
+
+std::optional<PoseTuple> tuple_of(const std::optional<Pose2>& pose) {
+  return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
+}
+
+void bind_localizer(py::module_& m) {
+  py::class_<Localizer>(m, "Localizer", "Follows a robot on a map that does not change. Not thread-safe.")
+      .def(py::init([](const std::shared_ptr<ReferenceMap>& map, const Parameters& parameters, const PoseTuple& mount) {
+             return std::make_unique<Localizer>(map, parameters, pose_of(mount));
+           }),
+           py::arg("map"), py::arg("parameters"), py::arg("sensor_on_base") = PoseTuple{0.0, 0.0, 0.0})
+      .def(
+          "start_at",
+          [](Localizer& l, const PoseTuple& pose, const Eigen::Matrix3d& covariance) {
+            l.start_at(pose_of(pose), covariance);
+          },
+          py::arg("sensor_on_map"), py::arg("covariance"),
+          "Says about where the sensor is at the next scan; the covariance is along the axes of the map.")
+      .def("start_searching", &Localizer::start_searching, "Forgets the pose.")
+      .def(
+          "add_scan",
+          [](Localizer& l, double time, double angle_min, double angle_increment, double range_min, double range_max,
+             const Ranges& ranges, const PoseTuple& odometry) {
+            const LaserScan scan{
+                time,      angle_min, angle_increment,
+                range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
+            const py::gil_scoped_release release;
+            l.add_scan(scan, pose_of(odometry));
+          },
+          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
+          py::arg("ranges"), py::arg("odometry"),
+          "Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then.")
+      .def_property_readonly(
+          "state", [](const Localizer& l) { return std::string(to_string(l.state())); },
+          "\"searching\", \"tracking\", \"uncertain\" or \"lost\".")
+      .def_property_readonly(
+          "T_map_sensor", [](const Localizer& l) { return tuple_of(l.T_map_sensor()); },
+          "The sensor's pose at the latest scan; None while searching.")
+      .def_property_readonly(
+          "T_map_odom", [](const Localizer& l) { return tuple_of(l.T_map_odom()); },
+          "Where odometry's frame is on the map; None while searching.")
+      .def_property_readonly(
+          "covariance", [](const Localizer& l) { return array_of(l.covariance()); },
+          "(3, 3) of T_map_sensor, along the axes of the map.")
+      .def_property_readonly("support", &Localizer::support, "How well the latest scan fitted, at most 1.")
+      .def_property_readonly(
+          "statistics", [](const Localizer& l) { return dict_of(l.statistics()); }, "Counts since it was made.");
+}
+
+}  // namespace
+
+void bind_localization(py::module_& m) {
+  bind_reference(m);
+  bind_relocalizer(m);
+  bind_localizer(m);
+}
+
+}  // namespace oort

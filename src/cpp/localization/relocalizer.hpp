@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "oort/geometry/point_cloud.hpp"
+#include "oort/geometry/pose2.hpp"
+#include "oort/localization/reference_map.hpp"
+
+namespace oort {
+
+/// Why a search without a guess gave the answer or refused one.
+enum class RelocalizationStatus {
+  kFound,
+  kTooFewPoints,  ///< the scans show too little
+  kNoMatch,       ///< no place of the map fits
+  kLowSupport,    ///< the best place does not fit well enough
+  kAmbiguous,     ///< another place fits nearly as well, or there are more than can be told apart
+  kImprecise,     ///< the place is found but along some direction not where exactly
+};
+
+std::string_view to_string(RelocalizationStatus status);
+
+/// A scan and where odometry saw it.
+struct PlacedScan {
+  PointCloud cloud;
+  Pose2 T_odom_sensor;
+};
+
+/// A place of the map where the scans fit.
+struct Hypothesis {
+  Pose2 T_map_sensor;                                        ///< of the newest scan
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of its x, y, theta, along the axes of the map
+  Support support;
+};
+
+struct Relocalization {
+  RelocalizationStatus status = RelocalizationStatus::kNoMatch;
+  std::optional<Hypothesis> best;    ///< the answer if status is kFound; what was refused otherwise
+  std::optional<Hypothesis> second;  ///< the next place apart from it, by 0.3 m or 0.3 rad
+};
+
+/// Finds the robot on a map without a guess: branch and bound over the whole map and all headings (Hess et al. 2016),
+/// then a look at each place that scores nearly as well as the best. Const and re-entrant.
+class Relocalizer {
+ public:
+  Relocalizer(std::shared_ptr<const ReferenceMap> map, const Parameters& parameters);
+
+  /// `scans`: one or a few, oldest first, joined by odometry. The answer is the newest one's pose.
+  /// Throws InputError if there is none or a pose is not finite.
+  Relocalization find(const std::vector<PlacedScan>& scans) const;
+
+ private:
+  std::vector<Hypothesis> hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
+                                     bool& complete) const;
+  RelocalizationStatus judge(const Relocalization& result, bool complete) const;
+
+  std::shared_ptr<const ReferenceMap> map_;
+  RelocalizerParameters parameters_;
+  frsm::Matcher matcher_;
+};
+
+}  // namespace oort

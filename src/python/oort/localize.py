@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``python -m oort.localize MAP RECORDING``: follows a recorded drive on a saved map, which stays as it is."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from oort._core import Map, Parameters, load_map, render_map
+from oort.errors import OortError
+from oort.export import write_picture, write_tum
+from oort.export.files import write_atomically
+from oort.localization import STARTS, LocalizedDrive, follow, start_pose
+from oort.parameters import read_parameters
+from oort.recording import Pose, open_recording
+from oort.replay import scans_with_progress
+
+
+def write_localization(
+    drive: LocalizedDrive, map_: Map, map_path: str, parameters: Parameters, out: Path
+) -> dict[str, Any]:
+    """Writes trajectory.tum, map.png and report.json into a folder; returns the report.
+
+    The trajectory has the scans whose pose was known. Raises OortError if something cannot be written.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    write_tum(out / "trajectory.tum", drive.stamps, drive.base_poses)
+    grid = render_map(map_, parameters)[0]
+    write_picture(out / "map.png", grid.cells, grid.resolution, (*grid.origin, 0.0), trajectory=drive.base_poses)
+    report = _report(drive, map_path, parameters)
+    write_atomically(out / "report.json", (json.dumps(report, indent=2) + "\n").encode())
+    return report
+
+
+def _report(drive: LocalizedDrive, map_path: str, parameters: Parameters) -> dict[str, Any]:
+    deviations = np.array(drive.deviations or [0.0])
+    return {
+        "input": drive.recording.name,
+        "kind": drive.recording.kind,
+        "notes": list(drive.recording.notes),
+        "map": map_path,
+        "recorded_seconds": drive.recorded_seconds,
+        **drive.localizer.statistics,
+        "scans_with_pose": len(drive.stamps),
+        "states": {state: n for state in ("searching", "tracking", "uncertain", "lost") if (n := _count(drive, state))},
+        "stretches": [{"state": s.state, "begin": s.begin, "end": s.end, "scans": s.scans} for s in drive.stretches],
+        "position_deviation": {
+            "median": round(float(np.median(deviations)), 4),
+            "max": round(float(deviations.max()), 4),
+        },
+        "timings": drive.watch.figures(drive.recorded_seconds),
+        "parameters": parameters.to_dict(),
+    }
+
+
+def _count(drive: LocalizedDrive, state: str) -> int:
+    return sum(stretch.scans for stretch in drive.stretches if stretch.state == state)
+
+
+def format_localization(report: dict[str, Any]) -> str:
+    """The figures as aligned lines of text."""
+    per_scan = report["timings"]["ms_per_scan"]
+    rows = [
+        ("scans", f"{report['scans']} ({report['matched']} matched{_reasons(report['match_refusals'])})"),
+        ("states", ", ".join(f"{state} {n}" for state, n in report["states"].items())),
+        ("searches", f"{report['searches']}{_reasons(report['search_refusals'])}, {report['jumps']} jumps"),
+        ("deviation", "median {median:.3f} m, max {max:.3f} m".format(**report["position_deviation"])),
+        ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),
+    ]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _reasons(reasons: dict[str, int]) -> str:
+    return "; refused: " + ", ".join(f"{why} {n}" for why, n in sorted(reasons.items())) if reasons else ""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort localize", description="Follows a recorded drive on a saved map, without changing the map."
+    )
+    parser.add_argument("map", help="base path of the saved map")
+    parser.add_argument("input", help="the recording, as for oort replay")
+    parser.add_argument("--start", choices=STARTS, default=STARTS[0], help="how to begin (default: global, a search)")
+    parser.add_argument(
+        "--pose", type=float, nargs=3, metavar=("X", "Y", "THETA"), help="the sensor's pose for --start pose [m, rad]"
+    )
+    parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
+    parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
+    parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
+    parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
+    parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>-localized)")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    return parser
+
+
+def _run(args: argparse.Namespace) -> None:
+    parameters = read_parameters(args.params)
+    map_ = load_map(args.map)
+    recording = open_recording(
+        args.input, scan_topic=args.scan_topic, odom_frame=args.odom_frame, max_range=args.max_range
+    )
+    start: Pose | None = None
+    if args.start == "pose":
+        start = tuple(args.pose)
+    elif args.start != "global":
+        start = start_pose(map_, parameters, args.start)
+    drive = follow(recording, scans_with_progress(recording, args.quiet), map_, parameters, start)
+    folder = Path(args.out) if args.out else Path("oort-out") / f"{recording.name}-localized"
+    report = write_localization(drive, map_, args.map, parameters, folder)
+    if not args.quiet:
+        for note in recording.notes:
+            print(f"note: {note}", file=sys.stderr)
+        print(format_localization(report))
+        print(f"wrote {folder}: trajectory.tum map.png report.json")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line tool; exit code 2 for an input or a call that cannot be used."""
+    parser = _parser()
+    args = parser.parse_args(argv)
+    if (args.start == "pose") != (args.pose is not None):
+        parser.error("--start pose and --pose go together")
+    try:
+        _run(args)
+    except OortError as error:
+        print(f"oort localize: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"oort localize: {error.filename or args.input}: {error.strerror}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,330 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``rosrun oort oort_localizer``: tells where the robot is on a saved map while nothing is being mapped."""
+
+import json
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+try:
+    import rospy
+    import tf2_ros
+except ImportError as error:
+    sys.exit(
+        f"oort_localizer: {error}. The node needs Debian's ROS packages (scripts/setup.sh --ros) and a Python made "
+        f"from /usr/bin/python3 with its site packages; this is {sys.executable}"
+    )
+
+import numpy as np
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import OccupancyGrid
+from numpy.typing import NDArray
+from oort_msgs import srv
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
+from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
+
+from oort._core import Map, Parameters, load_map, normalise_map_path, render_map
+from oort.errors import InputError, OortError, StateError
+from oort.export.files import write_atomically
+from oort.live import UnusableScanError
+from oort.live.inbox import CallItem, Inbox, Resolve, ScanItem
+from oort.localization import Localizer, ReferenceMap, start_covariance, start_pose
+from oort.poses import between, compose
+from oort.recording import Pose, Scan
+from oort.recording.laser_scan import seconds
+from oort.ros.messages import grid_message, rotation, to_scan, transform, yaw
+from oort.ros.settings import read_private
+from oort.ros.transforms import Transforms, frame
+
+_TF_PERIOD = 0.05  # [s]
+_IDLE = 0.2  # [s] between looks at whether the node is to end
+_SAVE_PERIOD = 10.0  # [s] between savings of the pose
+_LAST_POSE = ".last_pose.json"  # after the map's base path
+_STARTS = ("auto", "global", "dock", "last")
+
+
+class LocalizerNode:
+    """Scans, odometry and starting poses in; map -> odom, the pose and the map out.
+
+    One thread works through scans and calls in the order in which they came. map -> odom is left to others as long as
+    another program, such as Oort's mapping, publishes it.
+    """
+
+    def __init__(self, parameters: Parameters, base: str, start: str) -> None:
+        """Loads the map, advertises and subscribes. Raises OortError if the map or the start cannot be used."""
+        self._parameters = parameters
+        self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
+        self._laser = ""
+        self._last_tf = rospy.Time()
+        self._tf_lock = threading.Lock()
+        self._closing = False
+        self._saved = time.monotonic()
+        self._mount: Pose | None = None
+        self._seed: tuple[Pose, NDArray[np.float64]] | None = None  # T_map_sensor, until the laser's mount is known
+        self._localizer: Localizer | None = None
+        self._load(base)
+
+        self._maps = [rospy.Publisher(topic, OccupancyGrid, queue_size=1, latch=True) for topic in _MAPS]
+        self._pose = rospy.Publisher("~pose", PoseWithCovarianceStamped, queue_size=10)
+        self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
+        self._told_state = ""
+        self._broadcaster = tf2_ros.TransformBroadcaster()
+        self._inbox = Inbox()
+        self._transforms = Transforms(parameters, self._inbox.poke)
+        self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
+        self._begin(start)
+        self._show_map()
+        rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
+        rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_initial_pose)
+        self._worker = threading.Thread(target=self._work, name="oort-localize", daemon=True)
+        self._worker.start()
+        threading.Thread(target=self._repeat_tf, daemon=True).start()
+        rospy.Service("~map/load", srv.SetString, self._answer("load", srv.SetStringResponse))
+        rospy.Service("~relocalize", Empty, self._answer("relocalize", EmptyResponse))
+        rospy.Service("~is_localized", srv.GetBool, lambda _: srv.GetBoolResponse(self._told_state == "tracking"))
+
+    def close(self) -> None:
+        """Saves the pose and ends the thread."""
+        self._closing = True
+        self._inbox.wake()
+        self._worker.join()
+        self._inbox.close(StateError("the localiser is being shut down"))
+        self._save_pose()
+
+    # ---- the map and the start ----
+
+    def _load(self, base: str) -> None:
+        map_ = load_map(base)
+        self._reference = ReferenceMap(map_, self._parameters)
+        self._map: Map = map_
+        self._base = normalise_map_path(base)
+        self._localizer = None
+
+    def _show_map(self) -> None:
+        stamp = rospy.Time.now()
+        for publisher, grid in zip(self._maps, render_map(self._map, self._parameters), strict=True):
+            if grid.cells.size:
+                publisher.publish(grid_message(grid, self._map_frame, stamp))
+
+    def _begin(self, start: str) -> None:
+        """Seeds the localiser. ``auto`` takes the last pose if there is one; what does not fit is searched for."""
+        self._seed = None
+        if start == "dock":
+            self._seed = start_pose(self._map, self._parameters, "dock"), start_covariance()
+        elif start in ("auto", "last"):
+            pose = self._read_pose()
+            if pose is None and start == "last":
+                raise InputError(f"{self._base + _LAST_POSE}: there is no last pose; start another way")
+            self._seed = None if pose is None else (pose, start_covariance())
+
+    def _read_pose(self) -> Pose | None:
+        path = Path(self._base + _LAST_POSE)
+        try:
+            x, y, theta = map(float, json.loads(path.read_text(encoding="utf-8"))["T_map_sensor"])
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            rospy.logwarn("%s cannot be used: %s", path, error)
+            return None
+        return x, y, theta
+
+    def _save_pose(self) -> None:
+        """Keeps the pose for the next start, if it can be relied on."""
+        localizer = self._localizer
+        if localizer is None or localizer.state != "tracking" or localizer.T_map_sensor is None:
+            return
+        text = json.dumps({"T_map_sensor": localizer.T_map_sensor}) + "\n"
+        try:
+            write_atomically(Path(self._base + _LAST_POSE), text.encode())
+        except OortError as error:
+            rospy.logwarn_once("the pose is not kept for the next start: %s", error)
+
+    # ---- what comes in ----
+
+    def _on_scan(self, message: LaserScan) -> None:
+        self._inbox.add_scan(self._resolve(message, time.monotonic()))
+
+    def _resolve(self, message: LaserScan, arrived: float) -> Resolve:
+        sensor_frame = message.header.frame_id.lstrip("/") or frame(self._parameters, "sensor")
+        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+
+        def resolve() -> Scan | None:
+            if not message.ranges:
+                raise UnusableScanError("without readings")
+            if self._laser and sensor_frame != self._laser:
+                raise UnusableScanError("in another laser's frame")
+            mount = self._transforms.mount(sensor_frame)
+            odometry = None if mount is None else self._transforms.odometry(stamp, arrived)
+            if mount is None or odometry is None:
+                return None
+            self._laser, self._mount = sensor_frame, mount.sensor_on_base
+            return to_scan(message, odometry, mount.upside_down)
+
+        return resolve
+
+    def _on_initial_pose(self, message: PoseWithCovarianceStamped) -> None:
+        """T_map_base from a person: RViz's "2D Pose Estimate"."""
+        told = message.header.frame_id.lstrip("/")
+        if told and told != self._map_frame:
+            rospy.logwarn("initialpose: it is in frame %s, not in %s; left out", told, self._map_frame)
+            return
+        position, full = message.pose.pose.position, np.reshape(message.pose.covariance, (6, 6))
+        pose = position.x, position.y, yaw(message.pose.pose.orientation)
+        covariance = full[np.ix_([0, 1, 5], [0, 1, 5])]
+        if not np.isfinite(covariance).all() or np.linalg.eigvalsh(covariance)[0] <= 0.0:
+            covariance = start_covariance(0.5, 0.3)
+        self._inbox.add_call("start_at", [pose, covariance])
+
+    def _answer(self, name: str, response: Callable[[], object]) -> Callable[[object], object]:
+        def handle(request: EmptyRequest | srv.SetStringRequest) -> object:
+            args = [request.data] if hasattr(request, "data") else []
+            try:
+                self._inbox.add_call(name, args).result()
+            except OortError as error:
+                rospy.logwarn("%s", error)
+                raise rospy.ServiceException(str(error)) from error
+            return response()
+
+        return handle
+
+    # ---- the working thread ----
+
+    def _work(self) -> None:
+        while not self._closing:
+            item = self._inbox.head(True, _IDLE)
+            if item is None:
+                continue
+            try:
+                self._take(item) if isinstance(item, ScanItem) else self._make(item)
+            except Exception as error:  # whatever is wrong with one, the others go on
+                rospy.logwarn_throttle(_SAVE_PERIOD, f"a scan is left out: {error}")
+            self._inbox.pop()
+            if time.monotonic() > self._saved + _SAVE_PERIOD:
+                self._saved = time.monotonic()
+                self._save_pose()
+
+    def _take(self, item: ScanItem) -> None:
+        if item.scan is None:
+            rospy.logwarn_throttle(_SAVE_PERIOD, f"a scan is left out: {item.why}")
+            return
+        scan, mount = item.scan, self._mount
+        assert mount is not None  # what resolved the scan has set it
+        if self._localizer is None:
+            self._localizer = Localizer(self._reference, self._parameters, mount)
+        if self._seed is not None:
+            self._localizer.start_at(*self._seed)
+            self._seed = None
+        localizer = self._localizer
+        localizer.add_scan(
+            scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, scan.odometry
+        )
+        self._tell(scan, mount)
+
+    def _make(self, item: CallItem) -> None:
+        try:
+            if item.name == "load":
+                self._load(item.args[0])
+                self._begin("auto")
+                self._show_map()
+            elif item.name == "relocalize":
+                self._seed = None
+                if self._localizer is not None:
+                    self._localizer.start_searching()
+            else:
+                base, covariance = item.args
+                self._seed = self._sensor_at(base), covariance
+        except Exception as error:  # the caller's
+            item.result.set_exception(error)
+            return
+        item.result.set_result(None)  # type: ignore[arg-type]
+
+    def _sensor_at(self, T_map_base: Pose) -> Pose:  # noqa: N803
+        if self._mount is None:
+            raise StateError("initialpose: no scan has come yet, so the sensor's place on the base is not known")
+        x, y, theta = compose(T_map_base, self._mount).tolist()
+        return x, y, theta
+
+    # ---- what goes out ----
+
+    def _tell(self, scan: Scan, mount: Pose) -> None:
+        localizer = self._localizer
+        assert localizer is not None
+        if localizer.state != self._told_state:
+            self._told_state = localizer.state
+            rospy.loginfo("%s (support %.2f)", localizer.state, localizer.support)
+            self._state.publish(localizer.state)
+        if localizer.T_map_odom is None:
+            return
+        self._tell_tf()
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id, message.header.stamp = self._map_frame, rospy.Time.from_sec(scan.time)
+        x, y, theta = compose(localizer.T_map_odom, scan.odometry).tolist()
+        message.pose.pose.position.x, message.pose.pose.position.y = x, y
+        message.pose.pose.orientation = rotation(theta)
+        full = np.zeros((6, 6))
+        full[np.ix_([0, 1, 5], [0, 1, 5])] = _of_base(localizer.covariance, theta, mount)
+        message.pose.covariance = full.ravel().tolist()
+        self._pose.publish(message)
+
+    def _tell_tf(self) -> None:
+        """map -> odom, dated one period ahead; nothing while lost, or while another program tells it."""
+        with self._tf_lock:
+            localizer = self._localizer
+            pose = None if localizer is None or localizer.state == "lost" else localizer.T_map_odom
+            stamp = rospy.Time.now() + rospy.Duration(_TF_PERIOD)
+            if pose is None or stamp == self._last_tf or self._transforms.is_localised():
+                return
+            self._last_tf = stamp
+            self._broadcaster.sendTransform(transform(self._map_frame, self._odom_frame, stamp, pose))
+
+    def _repeat_tf(self) -> None:
+        while not rospy.is_shutdown() and not self._closing:
+            self._tell_tf()
+            time.sleep(_TF_PERIOD)
+
+
+_MAPS = ("map", "map_cleaned")
+
+
+def _of_base(covariance: NDArray[np.float64], theta: float, mount: Pose) -> NDArray[np.float64]:
+    """The base's covariance from the sensor's, both along the map's axes; ``theta`` is the base's heading."""
+    to_base = between(mount, np.zeros(3))  # T_sensor_base
+    offset = compose([0.0, 0.0, theta + mount[2]], to_base)[:2]  # from the sensor to the base, along the map's axes
+    jacobian = np.eye(3)
+    jacobian[:2, 2] = -offset[1], offset[0]
+    return np.asarray(jacobian @ covariance @ jacobian.T)
+
+
+def main() -> int:
+    """Runs the node until it is told to end; exit code 2 if it cannot begin."""
+    rospy.init_node("oort_localizer", disable_signals=True)
+    told_to_end = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: told_to_end.set())
+    try:
+        parameters, own = read_private(["map", "start"])
+        start = own["start"] or "auto"
+        if not own["map"] or start not in _STARTS:
+            raise InputError(f"~map must be the path of a saved map, and ~start one of {', '.join(_STARTS)}")
+        node = LocalizerNode(parameters, own["map"], start)
+        try:
+            rospy.loginfo("%s is ready", rospy.get_name())
+            while not told_to_end.wait(0.1) and not rospy.is_shutdown():
+                pass
+        finally:
+            node.close()
+    except OortError as error:
+        rospy.logfatal("%s", error)
+        return 2
+    finally:
+        rospy.signal_shutdown("the node ends")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
