@@ -210,6 +210,23 @@ TEST(LearnedOdometry, FollowsHowFarMatchesAreFromIt) {
   EXPECT_DOUBLE_EQ(learned(0.01, 1.0).rotation_factor(), 1.0);  // nothing is learned
 }
 
+TEST(LearnedOdometry, FindsTheScalesOfWayAndTurn) {
+  LearnedOdometry odometry({0.1, 0.05, 0.1, 0.15, 0.005, 0.005}, 0.2);
+  const Pose2 straight{0.2, 0.0, 0.0},
+      turn{0.0, 0.0, 0.6};  // measured; the wheels are 4 % too small, the base too wide
+  for (int k = 0; k < 200; ++k) {
+    for (const Pose2& measured : {straight, turn}) {
+      const Pose2 corrected = odometry.corrected(measured);
+      odometry.learn(corrected, between(corrected, Pose2{0.96 * measured.x, 0.0, 1.05 * measured.theta}));
+    }
+  }
+  EXPECT_NEAR(odometry.corrected(straight).x, 0.96 * straight.x, 0.01 * straight.x);
+  EXPECT_NEAR(odometry.corrected(turn).theta, 1.05 * turn.theta, 0.01 * turn.theta);
+  // What counts forwards when it goes backwards is not to be mended by a scale.
+  for (int k = 0; k < 200; ++k) odometry.learn(straight, between(straight, Pose2{-0.2, 0.0, 0.0}));
+  EXPECT_NEAR(odometry.corrected(straight).x, 0.9 * straight.x, 1e-9);
+}
+
 TEST(LearnedOdometry, ASingleSlipSaysLittle) {
   LearnedOdometry odometry({0.1, 0.05, 0.1, 0.15, 0.005, 0.005}, 0.2);
   for (int k = 0; k < 200; ++k) odometry.learn({0.2, 0.0, 0.0}, {0.01, 0.0, 0.01});

@@ -66,6 +66,10 @@ class IncrementalGraphBuilder {
   /// Whether odometry has a covariance of its own, that grows with the motion (odometry_model).
   bool knows_odometry() const { return motion_model_; }
 
+  /// A motion of the base by odometry, with what it is always wrong by taken out.
+  Pose2 corrected(const Pose2& T_before_after) const { return odometry_model_.corrected(T_before_after); }
+  bool learns_odometry() const { return motion_model_ && parameters_.odometry_noise.least_learned < 1.0; }
+
   /// Covariance of a motion by odometry alone, along the axes of the frame before. What has been learned of odometry
   /// holds while scans do not speak against it: with a refusal of what was seen, it is as uncertain as configured.
   Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after, const std::string& refusal = "") const;

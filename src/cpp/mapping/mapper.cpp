@@ -78,13 +78,18 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
   }
   LastScan now;
   now.cloud = to_point_cloud(scan);
+  now.T_odom_base_measured = T_odom_base;
   now.T_odom_base = T_odom_base;
-  now.T_odom_sensor = T_odom_base * T_base_sensor_;
+  if (last_scan_ && incremental_.learns_odometry()) {
+    now.T_odom_base =
+        last_scan_->T_odom_base * incremental_.corrected(between(last_scan_->T_odom_base_measured, T_odom_base));
+  }
+  now.T_odom_sensor = now.T_odom_base * T_base_sensor_;
   ++statistics_.scans;
   const std::uint64_t solves_before = statistics_.solves;
 
   const bool has_points = count_returns(now.cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
-  bool due = has_points && is_due(T_odom_base);
+  bool due = has_points && is_due(now.T_odom_base);
   if (has_points && (due || parameters_.incremental_graph_builder.match_every_scan)) {
     track(now);
   } else {

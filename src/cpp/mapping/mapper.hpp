@@ -101,9 +101,10 @@ class Mapper {
   /// The latest scan and where it is.
   struct LastScan {
     PointCloud cloud;
-    Pose2 T_odom_sensor;
-    Pose2 T_odom_base;
-    TrackedScan tracked;  // its pose is odometry's as long as was_tracked is false
+    Pose2 T_odom_base_measured;  ///< as odometry has it
+    Pose2 T_odom_base;           ///< with the corrections of every motion so far
+    Pose2 T_odom_sensor;         ///< the same
+    TrackedScan tracked;         // its pose is odometry's as long as was_tracked is false
     bool was_tracked = false;
     bool missed = false;  // nothing that it shows says where it is
     bool is_node = false;

@@ -36,7 +36,7 @@ Pose2 Mapper::sensor_pose() const {
 }
 
 Pose2 Mapper::T_map_odom() const {
-  return sensor_pose() * inverse(last_scan_->T_odom_sensor);
+  return sensor_pose() * inverse(last_scan_->T_odom_base_measured * T_base_sensor_);
 }
 
 std::uint64_t Mapper::nearest_node(const Eigen::Vector2d& p_map) const {

@@ -32,8 +32,11 @@ class LearnedOdometry {
   /// Covariance of a measured motion T_before_after, along the axes of the frame before.
   Eigen::Matrix3d covariance(const Pose2& T_before_after) const;
 
-  /// Takes a motion by odometry and where the match found its end, seen from where odometry did.
+  /// Takes a (corrected) motion by odometry and where the match found its end, seen from where odometry did.
   void learn(const Pose2& T_before_after, const Pose2& T_odometry_match);
+
+  /// A measured motion with what odometry is always wrong by taken out: the scales of way and turn that matches found.
+  Pose2 corrected(const Pose2& T_before_after) const;
 
   const OdometryModel& model() const { return model_; }
 
@@ -47,6 +50,10 @@ class LearnedOdometry {
   double translation_ = 1.0;
   double rotation_ = 1.0;
   int steps_;
+  double way_scale_ = 1.0;
+  double turn_scale_ = 1.0;
+  double ways_;  // sum of the squares of what was measured, fading
+  double turns_;
 };
 
 }  // namespace oort

@@ -75,7 +75,8 @@ void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
       .own(0.005);
   v(p.least_learned, "least_learned", {0.2, "", {0.01, 1.0}},
     "How far the standard deviations above may shrink, as a factor, when matches that see all directions keep agreeing "
-    "with odometry; they grow (up to 3) when they keep disagreeing. 1: they stay as they are.")
+    "with odometry; they grow (up to 3) when they keep disagreeing. The scales of way and turn are learned too. 1: "
+    "nothing is learned.")
       .own(1.0,
            "How good a base is differs much. 25 simulated homes seen with 60 degrees: ATE median 0.079 m instead of "
            "0.23 m, 1 broken map instead of 7; with 90 degrees 0.032 m instead of 0.037 m.");
