@@ -277,5 +277,20 @@ TEST_F(MapperTest, MatchAgainstTheOdometryBecomesAnOdometryLink) {
   EXPECT_NEAR(jump->constraint.T_i_j.y, expected.y, 1e-9);
 }
 
+TEST_F(MapperTest, ASessionOnTheMapInMemoryIsThatOnTheMapLoaded) {
+  const std::vector<Pose2> odometry = testing::odometry_of(truth, 0.03, 0.02);
+  Mapper mapper(Parameters(), kMount);
+  drive(mapper, world, truth, odometry);
+  mapper.finish();
+  Mapper loaded(Parameters(), kMount);
+  loaded.set_map(mapper.map());
+  for (Mapper* session : {&mapper, &loaded}) {
+    session->begin_session({});
+    drive(*session, world, truth, odometry, 1000.0);
+    session->finish();
+  }
+  expect_same(mapper.map(), loaded.map());
+}
+
 }  // namespace
 }  // namespace oort

@@ -138,6 +138,9 @@ void Mapper::begin_session(const Pose2& T_map_sensor) {
   T_map_start_ = T_map_sensor;
   next_link_ = map_.graph.nodes.empty() ? NextLink::kNone : NextLink::kSession;
   last_scan_.reset();
+  // A session on the map in memory is the same as one on that map loaded: nothing learned, nothing half done.
+  incremental_ = IncrementalGraphBuilder(parameters_);
+  loops_ = LoopClosureBuilder(parameters_);
 }
 
 void Mapper::resume_from_paused() {
