@@ -108,7 +108,10 @@ class SubmapCacheTest : public ::testing::Test {
     append_chain(make_room(), places, {}, map, chains);
   }
 
-  SubmapCache cache(std::size_t capacity) const { return {7, capacity, frsm::TableParams{}, frsm::ContourParams{}}; }
+  using TableCache = SubmapCache<frsm::Table>;
+  TableCache cache(std::size_t capacity) const {
+    return table_cache(7, capacity, frsm::TableParams{}, frsm::ContourParams{});
+  }
 
   Map map;
   Chains chains;
@@ -133,11 +136,11 @@ void expect_equal(const frsm::Table& a, const frsm::Table& b) {
 
 TEST_F(SubmapCacheTest, ServesFromMemoryAndRedrawsTheSame) {
   ASSERT_GT(map.clouds.size(), 20u);
-  SubmapCache large = cache(64);
+  TableCache large = cache(64);
   const auto first = large.get(map, chains, 10);
   EXPECT_EQ(large.get(map, chains, 10), first);  // not drawn again
 
-  SubmapCache small = cache(1);
+  TableCache small = cache(1);
   const auto drawn = small.get(map, chains, 10);
   small.get(map, chains, 3);
   const auto redrawn = small.get(map, chains, 10);
@@ -147,15 +150,15 @@ TEST_F(SubmapCacheTest, ServesFromMemoryAndRedrawsTheSame) {
 }
 
 TEST_F(SubmapCacheTest, OrderOfQueriesDoesNotMatter) {
-  SubmapCache forward = cache(3);
-  SubmapCache backward = cache(3);
+  TableCache forward = cache(3);
+  TableCache backward = cache(3);
   std::vector<std::shared_ptr<const frsm::Table>> tables(12);
   for (std::uint64_t node = 0; node < 12; ++node) tables[node] = forward.get(map, chains, node);
   for (std::uint64_t node = 12; node-- > 0;) expect_equal(*backward.get(map, chains, node), *tables[node]);
 }
 
 TEST_F(SubmapCacheTest, FollowsANeighborhoodThatGrows) {
-  SubmapCache grown = cache(64);
+  TableCache grown = cache(64);
   Chains young;
   for (std::uint64_t node = 0; node < chains.size(); ++node) {
     young.add(node == 0, true, chains.local_pose(node));
@@ -165,7 +168,7 @@ TEST_F(SubmapCacheTest, FollowsANeighborhoodThatGrows) {
 }
 
 TEST_F(SubmapCacheTest, MayBeDrawnPieceByPiece) {
-  SubmapCache pieces = cache(64);
+  TableCache pieces = cache(64);
   int steps = 0;
   while (pieces.draw(map, chains, 10, 3)) ++steps;
   EXPECT_EQ(steps, 3);  // 7 scans

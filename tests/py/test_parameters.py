@@ -46,8 +46,10 @@ def refusal(tmp_path: Path, text: str) -> str:
 
 # ---- the shipped files ----
 
+SHIPPED = ["params/params.json", "params/kuri_original.json", "params/cartographer.json", "docs/parameters.md"]
 
-@pytest.mark.parametrize("name", ["params/params.json", "params/kuri_original.json", "docs/parameters.md"])
+
+@pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_files_are_what_the_table_gives(name: str, tmp_path: Path) -> None:
     assert main(["write", str(tmp_path)]) == 0
     assert (ROOT / name).read_bytes() == (tmp_path / name).read_bytes(), "run: python -m oort.parameters write ."
@@ -63,10 +65,19 @@ def test_the_table_documents_every_key(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_the_packaged_files_are_strict_json_with_the_values_of_the_table() -> None:
-    for name in ("params", "kuri_original"):
+    for name in ("params", "kuri_original", "cartographer"):
         json.loads(packaged_path(name).read_text(encoding="utf-8"))
     assert packaged_parameters().to_dict() == Parameters().to_dict() == read_parameters().to_dict()
     assert packaged_parameters("kuri_original").to_dict() == {e.path: e.documented for e in parameter_table()}
+
+
+def test_the_cartographer_preset_chooses_its_matchers_and_nothing_else() -> None:
+    preset = packaged_parameters("cartographer").to_dict()
+    differing = {path: preset[path] for path, value in Parameters().to_dict().items() if preset[path] != value}
+    assert differing == {
+        "incremental_graph_builder.scanmatcher": "cartographer_matcher",
+        "loop_closure_graph_builder.scanmatcher": "branch_and_bound_matcher",
+    }
 
 
 def test_kuri_original_has_the_documented_keys_and_values() -> None:
@@ -157,8 +168,8 @@ def test_the_last_of_two_sections_counts(tmp_path: Path) -> None:
         ('{"linear_update": 1e999}', "linear_update: inf is out of range"),
         ('{"linear_update": 99999999999999999999}', "linear_update: 1e+20 is out of range"),
         ('{"output_map": {"speckle_strategy": "mean"}}', 'it takes "median" or "morphological"'),
-        ('{"incremental_graph_builder": {"scanmatcher": "cartographer_matcher"}}', "is not available in this version"),
-        ('{"loop_closure_graph_builder": {"scanmatcher": "branch_and_bound_matcher"}}', "not available"),
+        ('{"incremental_graph_builder": {"scanmatcher": "cartographer"}}', "is not allowed"),
+        ('{"loop_closure_graph_builder": {"scanmatcher": "cartographer_matcher"}}', "is not allowed"),
         ('{"output_map": 3}', "my.json:1: output_map: is a section"),
         ('{"linear_update": {"m": 1}}', "linear_update: takes one value (number)"),
         ('{"linear_update": null}', "my.json:1: expected the value of linear_update: true, false"),

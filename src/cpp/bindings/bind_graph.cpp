@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -11,7 +12,7 @@
 
 #include "oort/bindings/bindings.hpp"
 #include "oort/geometry/errors.hpp"
-#include "oort/graph/optimizer.hpp"
+#include "oort/graph/landmarks.hpp"
 #include "oort/mapping/map.hpp"
 
 namespace py = pybind11;
@@ -105,25 +106,74 @@ std::tuple<py::array_t<double>, py::array_t<double>, OptimizerSummary> optimize_
   return {poses_of(graph), switches_of(graph), summary};
 }
 
+/// The place in the drive of each time, by the stamps of the clouds. InputError for a time before the first node or
+/// after the last.
+LandmarkObservation placed(const Map& map, double time) {
+  for (std::size_t k = 0; k + 1 < map.clouds.size(); ++k) {
+    const double before = map.clouds[k].time, after = map.clouds[k + 1].time;
+    if (before <= time && time <= after) {
+      LandmarkObservation observation;
+      observation.before = k;
+      observation.after = k + 1;
+      observation.fraction = after > before ? (time - before) / (after - before) : 0.0;
+      return observation;
+    }
+  }
+  throw InputError("landmark observation at " + std::to_string(time) + " s: no two nodes were made around that time");
+}
+
+std::tuple<std::map<std::uint64_t, std::tuple<double, double, double>>, OptimizerSummary> optimize_map_with_landmarks(
+    Map& map, const Array<double>& times, const Array<std::int64_t>& landmarks, const Array<double>& measurements,
+    const Array<double>& covariances, const OptimizerOptions& options) {
+  const py::ssize_t count = times.ndim() > 0 ? times.shape(0) : 0;
+  require_shape(times, {count}, "times");
+  require_shape(landmarks, {count}, "landmarks");
+  require_shape(measurements, {count, 3}, "measurements");
+  require_shape(covariances, {count, 3, 3}, "covariances");
+  std::vector<LandmarkObservation> observations;
+  const auto z = measurements.unchecked<2>();
+  for (py::ssize_t k = 0; k < count; ++k) {
+    LandmarkObservation observation = placed(map, times.at(k));
+    observation.landmark = static_cast<std::uint64_t>(landmarks.at(k));
+    observation.T_sensor_landmark = {z(k, 0), z(k, 1), z(k, 2)};
+    observation.covariance = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(covariances.data(k, 0, 0));
+    observations.push_back(observation);
+  }
+  Landmarks found;
+  const OptimizerSummary summary = optimize_with_landmarks(map.graph, observations, found, options);
+  std::map<std::uint64_t, std::tuple<double, double, double>> poses;
+  for (const auto& [id, pose] : found) poses[id] = {pose.x, pose.y, pose.theta};
+  return {poses, summary};
+}
+
 void bind_options(py::module_& m) {
   py::enum_<Whitening>(m, "Whitening", "How an error e is weighted by its information L L^T.")
       .value("CORRECT", Whitening::kCorrect, "L^T e")
       .value("ORIGINAL", Whitening::kOriginal, "L e, as Mayfield's Oort did");
+  py::enum_<RobustKernel>(m, "RobustKernel", "How a switchable link that disagrees loses its weight.")
+      .value("SWITCHABLE", RobustKernel::kSwitchable, "by its switch")
+      .value("HUBER", RobustKernel::kHuber, "its cost grows in proportion to its error, no longer its square");
   py::class_<OptimizerOptions>(m, "OptimizerOptions", "How the pose graph is solved.")
-      .def(py::init([](double scale, Whitening whitening, int max_iterations, bool decide, std::uint64_t first_free) {
-             return OptimizerOptions{scale, whitening, max_iterations, decide, first_free};
+      .def(py::init([](double scale, Whitening whitening, int max_iterations, bool decide, std::uint64_t first_free,
+                       RobustKernel kernel, double huber) {
+             return OptimizerOptions{scale, whitening, max_iterations, decide, first_free, kernel, huber};
            }),
            py::kw_only(), py::arg("switchable_constraint_scale") = OptimizerOptions{}.switchable_constraint_scale,
            py::arg("whitening") = OptimizerOptions{}.whitening,
            py::arg("max_iterations") = OptimizerOptions{}.max_iterations, py::arg("decide") = OptimizerOptions{}.decide,
-           py::arg("first_free_node") = OptimizerOptions{}.first_free_node)
+           py::arg("first_free_node") = OptimizerOptions{}.first_free_node,
+           py::arg("robust_kernel") = OptimizerOptions{}.robust_kernel,
+           py::arg("huber_scale") = OptimizerOptions{}.huber_scale)
       .def_readwrite("switchable_constraint_scale", &OptimizerOptions::switchable_constraint_scale,
                      "The squared Mahalanobis distance at which a link is half switched off.")
       .def_readwrite("whitening", &OptimizerOptions::whitening)
       .def_readwrite("max_iterations", &OptimizerOptions::max_iterations)
       .def_readwrite("decide", &OptimizerOptions::decide,
                      "Whether links that disagree with the optimum of the switches (at 95 %) are then left out.")
-      .def_readwrite("first_free_node", &OptimizerOptions::first_free_node, "Nodes before this one keep their poses.");
+      .def_readwrite("first_free_node", &OptimizerOptions::first_free_node, "Nodes before this one keep their poses.")
+      .def_readwrite("robust_kernel", &OptimizerOptions::robust_kernel)
+      .def_readwrite("huber_scale", &OptimizerOptions::huber_scale,
+                     "Standard deviations from which on a link's cost is no longer squared, with HUBER.");
   py::class_<OptimizerSummary>(m, "OptimizerSummary", "How solving the pose graph went.")
       .def_readonly("converged", &OptimizerSummary::converged)
       .def_readonly("iterations", &OptimizerSummary::iterations)
@@ -159,6 +209,13 @@ void bind_graph(py::module_& m) {
       py::arg("map"), py::arg("options") = OptimizerOptions{}, py::call_guard<py::gil_scoped_release>(),
       "Solves the pose graph of a map in place, from its poses and switches; no other thread may use the map "
       "meanwhile. Returns the summary. Raises InputError and ParameterError; the map is then unchanged.");
+  m.def("optimize_map_with_landmarks", &optimize_map_with_landmarks, py::arg("map"), py::arg("times"),
+        py::arg("landmarks"), py::arg("measurements"), py::arg("covariances"), py::arg("options") = OptimizerOptions{},
+        "Solves the pose graph of a map in place, always with Huber's loss, together with landmarks that are known "
+        "again when they are seen: for each of M observations the time (M,) [s], which landmark it is (M,), its pose "
+        "in the sensor frame (M, 3), and the covariance of that (M, 3, 3). The sensor is where it was between the two "
+        "nodes made before and after. Returns (pose in the map by landmark, summary). Raises InputError and "
+        "ParameterError; the map is then unchanged.");
 }
 
 }  // namespace oort

@@ -47,7 +47,6 @@ void bind_entry(py::module_& m) {
       .def_property_readonly("min", &min_of)
       .def_property_readonly("max", &max_of)
       .def_readonly("choices", &Entry::choices)
-      .def_readonly("later_choices", &Entry::later_choices)
       .def_readonly("meaning", &Entry::meaning)
       .def_readonly("reason", &Entry::reason)
       .def_property_readonly("status", [](const Entry& entry) { return status_name(entry.status); })

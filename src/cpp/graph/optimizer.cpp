@@ -10,6 +10,7 @@
 #include "oort/geometry/errors.hpp"
 #include "oort/graph/graph_check.hpp"
 #include "oort/graph/graph_solver.hpp"
+#include "oort/graph/landmarks.hpp"
 #include "oort/graph/residuals.hpp"
 #include "oort/graph/search.hpp"
 
@@ -18,16 +19,6 @@ namespace {
 
 // Squared errors beyond this overflow once products of them are summed.
 constexpr double kLargestSquaredError = 1e100;
-
-void check_options(const OptimizerOptions& options) {
-  if (!std::isfinite(options.switchable_constraint_scale) || options.switchable_constraint_scale <= 0.0) {
-    throw ParameterError("switchable_constraint_scale must be above 0, not " +
-                         std::to_string(options.switchable_constraint_scale));
-  }
-  if (options.max_iterations < 1) {
-    throw ParameterError("max_iterations must be at least 1, not " + std::to_string(options.max_iterations));
-  }
-}
 
 /// The edge as a link. InputError, naming the edge, if its covariance has no inverse or its error is too large to
 /// compute with.
@@ -94,7 +85,24 @@ const char* describe(GraphSolver::Progress progress) {
 
 }  // namespace
 
+void check_options(const OptimizerOptions& options) {
+  if (!std::isfinite(options.switchable_constraint_scale) || options.switchable_constraint_scale <= 0.0) {
+    throw ParameterError("switchable_constraint_scale must be above 0, not " +
+                         std::to_string(options.switchable_constraint_scale));
+  }
+  if (!std::isfinite(options.huber_scale) || options.huber_scale <= 0.0) {
+    throw ParameterError("huber_scale must be above 0, not " + std::to_string(options.huber_scale));
+  }
+  if (options.max_iterations < 1) {
+    throw ParameterError("max_iterations must be at least 1, not " + std::to_string(options.max_iterations));
+  }
+}
+
 OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
+  if (options.robust_kernel == RobustKernel::kHuber) {
+    Landmarks none;
+    return optimize_with_landmarks(graph, {}, none, options);
+  }
   check_options(options);
   check_graph(graph);
   GraphSolver solver(poses_of(graph), variables_of(graph, options.first_free_node), links_of(graph, options.whitening),

@@ -15,6 +15,12 @@ enum class Whitening {
   kOriginal,  ///< L e, as Mayfield's Oort did: its maps' poses are the optimum of this weighting
 };
 
+/// How a switchable link that disagrees loses its weight.
+enum class RobustKernel {
+  kSwitchable,  ///< by its switch: the cost of a link is at most half of switchable_constraint_scale
+  kHuber,       ///< its cost grows in proportion to its error, no longer its square: it keeps pulling, but less
+};
+
 struct OptimizerOptions {
   /// What it costs to switch a link off: a link whose squared Mahalanobis distance equals this is half switched off.
   double switchable_constraint_scale = 2.0;
@@ -25,13 +31,20 @@ struct OptimizerOptions {
   bool decide = true;
   /// Nodes with lower ids keep their poses: solving is then about the newest nodes only, and costs as much as they do.
   std::uint64_t first_free_node = 0;
+  RobustKernel robust_kernel = RobustKernel::kSwitchable;
+  /// Standard deviations from which on a link's cost is no longer squared; for kHuber.
+  double huber_scale = 10.0;
 };
+
+/// Throws ParameterError.
+void check_options(const OptimizerOptions& options);
 
 struct OptimizerSummary {
   bool converged = false;
   int iterations = 0;
   /// Half the sum of chi^2 over the edges and of scale chi^2 / (scale + chi^2) over the switchable edges, where chi^2
-  /// is an edge's squared Mahalanobis distance; before and after.
+  /// is an edge's squared Mahalanobis distance; before and after. With kHuber a switchable edge adds half of chi^2 up
+  /// to huber_scale^2, and of 2 huber_scale chi - huber_scale^2 beyond.
   double initial_cost = 0.0;
   double final_cost = 0.0;
   /// chi^2 of each switchable edge at the final poses.
@@ -40,7 +53,8 @@ struct OptimizerSummary {
 };
 
 /// Moves the nodes to the optimum of all links, however many of the switchable ones are false, and sets the switches:
-/// scale / (scale + chi^2), the least costly with the final poses.
+/// scale / (scale + chi^2), the least costly with the final poses. With kHuber switches only tell what became of a
+/// link: s^2 is the share of its weight that is left, min(1, huber_scale / chi); nothing is decided.
 ///
 /// Starts from the graph's own poses and switch values (docs/optimiser.md). The first node of the graph, and the first
 /// of every part that no edge links to it, keeps its pose. Deterministic: one thread; the same graph gives the same

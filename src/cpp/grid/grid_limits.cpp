@@ -16,6 +16,17 @@ Eigen::Array2d cells_needed(const Eigen::AlignedBox2d& box, double resolution) {
   return (box.sizes().array() / resolution).ceil().max(1.0);
 }
 
+[[noreturn]] void too_wide() {
+  throw InputError("grid: the points span more than a grid can hold (" +
+                   std::to_string(static_cast<long>(GridLimits::kMaxCells)) +
+                   " cells) or are not finite; look for a broken pose or choose a coarser resolution");
+}
+
+/// How many cells to add on a side that must move by `missing` cells (not at all if that is not positive).
+double cells_to_add(double missing, int size) {
+  return missing > 0.0 ? std::ceil(missing) + 1.0 + size / 8 : 0.0;
+}
+
 }  // namespace
 
 bool GridLimits::fits(const Eigen::AlignedBox2d& box, double resolution) {
@@ -27,11 +38,7 @@ bool GridLimits::fits(const Eigen::AlignedBox2d& box, double resolution) {
 }
 
 GridLimits GridLimits::enclosing(const Eigen::AlignedBox2d& box, double resolution) {
-  if (!fits(box, resolution)) {
-    throw InputError("grid: the points span more than a grid can hold (" +
-                     std::to_string(static_cast<long>(kMaxCells)) +
-                     " cells) or are not finite; look for a broken pose or choose a coarser resolution");
-  }
+  if (!fits(box, resolution)) too_wide();
   const Eigen::Array2d count = cells_needed(box, resolution);
   GridLimits limits;
   limits.resolution = resolution;
@@ -39,6 +46,23 @@ GridLimits GridLimits::enclosing(const Eigen::AlignedBox2d& box, double resoluti
   limits.height = static_cast<int>(count.y());
   limits.origin_x = box.max().x() - count.x() * resolution;
   limits.origin_y = box.max().y() - count.y() * resolution;
+  return limits;
+}
+
+GridLimits GridLimits::grown(const Eigen::AlignedBox2d& box) const {
+  if (!box.min().allFinite() || !box.max().allFinite() || box.isEmpty()) too_wide();
+  const Eigen::Vector2d low = to_cells(box.min());
+  const Eigen::Vector2d high = to_cells(box.max());
+  const double left = cells_to_add(-low.x(), width);
+  const double below = cells_to_add(-low.y(), height);
+  const double new_width = left + width + cells_to_add(high.x() - width, width);
+  const double new_height = below + height + cells_to_add(high.y() - height, height);
+  if (new_width * new_height > kMaxCells) too_wide();
+  GridLimits limits = *this;
+  limits.origin_x -= left * resolution;
+  limits.origin_y -= below * resolution;
+  limits.width = static_cast<int>(new_width);
+  limits.height = static_cast<int>(new_height);
   return limits;
 }
 

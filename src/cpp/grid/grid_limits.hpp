@@ -29,6 +29,11 @@ struct GridLimits {
   /// resolution that is not positive.
   static bool fits(const Eigen::AlignedBox2d& box, double resolution);
 
+  /// These limits, or wider ones on the same lattice that hold the box too. Every side that must move goes farther than
+  /// it must, by an eighth of the width, so that growing step by step costs little. Throws InputError if the box is not
+  /// finite or the limits would hold more than kMaxCells.
+  GridLimits grown(const Eigen::AlignedBox2d& box) const;
+
   std::size_t cell_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
   bool contains(int column, int row) const { return column >= 0 && column < width && row >= 0 && row < height; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "oort/geometry/errors.hpp"
 
@@ -29,13 +30,28 @@ OddsTable::OddsTable(double probability) {
   }
 }
 
+void ProbabilityGrid::grow(const Eigen::AlignedBox2d& box) {
+  const GridLimits grown = limits_.grown(box);
+  if (grown.width == limits_.width && grown.height == limits_.height) return;
+  std::vector<std::uint16_t> cells(grown.cell_count(), kUnknown);
+  const auto left = static_cast<int>(std::lround((limits_.origin_x - grown.origin_x) / limits_.resolution));
+  const auto below = static_cast<int>(std::lround((limits_.origin_y - grown.origin_y) / limits_.resolution));
+  for (int row = 0; row < limits_.height; ++row) {
+    const auto begin = cells_.begin() + static_cast<std::ptrdiff_t>(limits_.index(0, row));
+    std::copy(begin, begin + limits_.width,
+              cells.begin() + static_cast<std::ptrdiff_t>(grown.index(left, row + below)));
+  }
+  cells_ = std::move(cells);
+  limits_ = grown;
+}
+
 void ProbabilityGrid::finish_update() {
   for (const std::size_t index : updated_) cells_[index] = static_cast<std::uint16_t>(cells_[index] & ~kUpdated);
   updated_.clear();
 }
 
-double ProbabilityGrid::value_to_probability(std::uint16_t value) {
-  return kMinProbability + static_cast<double>(value - 1) * kStep;
+double ProbabilityGrid::value_to_probability(double value) {
+  return kMinProbability + (value - 1.0) * kStep;
 }
 
 std::uint16_t ProbabilityGrid::probability_to_value(double probability) {

@@ -33,6 +33,11 @@ class ProbabilityGrid {
   /// Every cell unknown.
   explicit ProbabilityGrid(const GridLimits& limits) : limits_(limits), cells_(limits.cell_count(), kUnknown) {}
 
+  /// Makes the grid wider, with unknown cells, until it holds the box and some cells around. What cells there are stay
+  /// where they are. Not between update() and finish_update(). Throws InputError, with the grid unchanged, if the box
+  /// is not finite or the grid would have more than GridLimits::kMaxCells.
+  void grow(const Eigen::AlignedBox2d& box);
+
   const GridLimits& limits() const { return limits_; }
 
   /// The values of all cells, row 0 (least y) first: kUnknown, or 1...kMaxValue for kMinProbability...kMaxProbability.
@@ -60,7 +65,8 @@ class ProbabilityGrid {
   /// Ends the observations of one cloud: each cell may be updated again.
   void finish_update();
 
-  static double value_to_probability(std::uint16_t value);
+  /// Linear, so that it turns a mean of values into the mean of their probabilities; not for kUnknown.
+  static double value_to_probability(double value);
   static std::uint16_t probability_to_value(double probability);
 
  private:

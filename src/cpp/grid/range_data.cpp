@@ -36,15 +36,6 @@ std::optional<SubcellPoint> to_subcells(const Eigen::Vector2d& point, const Grid
   return SubcellPoint{clamp(cells.x(), limits.width), clamp(cells.y(), limits.height)};
 }
 
-SubcellPoint to_subcells_or_throw(const Eigen::Vector2d& point, const GridLimits& limits, const PointCloud& cloud) {
-  const std::optional<SubcellPoint> subcells = to_subcells(point, limits);
-  if (!subcells) {
-    throw InputError("probability grid: the cloud of node " + std::to_string(cloud.id) +
-                     " reaches outside the grid; make the grid's limits from the same clouds and poses");
-  }
-  return *subcells;
-}
-
 }  // namespace
 
 std::vector<BeamEnd> beam_ends(const PointCloud& cloud, const Pose2& T_map_sensor,
@@ -69,8 +60,45 @@ std::vector<BeamEnd> beam_ends(const PointCloud& cloud, const Pose2& T_map_senso
   return ends;
 }
 
+BeamInserter::BeamInserter(const ProbabilityGridParameters& parameters)
+    : insert_free_space_(parameters.insert_free_space),
+      hit_table_(parameters.hit_probability),
+      miss_table_(parameters.miss_probability) {}
+
+bool BeamInserter::insert(const Eigen::Vector2d& sensor, const std::vector<BeamEnd>& ends,
+                          ProbabilityGrid& grid) const {
+  const GridLimits& limits = grid.limits();
+  const std::optional<SubcellPoint> begin = to_subcells(sensor, limits);
+  if (!begin) return false;
+  std::vector<SubcellPoint> cells;
+  cells.reserve(ends.size());
+  for (const BeamEnd& end : ends) {
+    const std::optional<SubcellPoint> cell = to_subcells(end.point, limits);
+    if (!cell) return false;
+    cells.push_back(*cell);
+  }
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (ends[i].is_hit) grid.update(cell_index(cells[i], limits.width), hit_table_);
+  }
+  if (insert_free_space_) {
+    for (const SubcellPoint& end : cells) {
+      visit_ray(*begin, end, limits.width, [&](std::size_t index) { grid.update(index, miss_table_); });
+    }
+  }
+  grid.finish_update();
+  return true;
+}
+
+void BeamInserter::insert_growing(const Eigen::Vector2d& sensor, const std::vector<BeamEnd>& ends,
+                                  ProbabilityGrid& grid) const {
+  Eigen::AlignedBox2d box(sensor);
+  for (const BeamEnd& end : ends) box.extend(end.point);
+  grid.grow(box);
+  insert(sensor, ends, grid);
+}
+
 RangeDataInserter::RangeDataInserter(const OutputGridParameters& parameters)
-    : parameters_(parameters), hit_table_(parameters.hit_probability), miss_table_(parameters.miss_probability) {
+    : parameters_(parameters), inserter_(parameters) {
   if (!(parameters.inf_clear_dist >= 0.0) || !std::isfinite(parameters.inf_clear_dist)) {
     throw ParameterError("probability_grid: inf_clear_dist must be a distance in metres, not " +
                          std::to_string(parameters.inf_clear_dist));
@@ -78,22 +106,10 @@ RangeDataInserter::RangeDataInserter(const OutputGridParameters& parameters)
 }
 
 void RangeDataInserter::insert(const PointCloud& cloud, const Pose2& T_map_sensor, ProbabilityGrid& grid) const {
-  const GridLimits& limits = grid.limits();
-  const std::vector<BeamEnd> ends = beam_ends(cloud, T_map_sensor, parameters_);
-  const SubcellPoint sensor = to_subcells_or_throw(T_map_sensor.translation(), limits, cloud);
-  std::vector<SubcellPoint> cells;
-  cells.reserve(ends.size());
-  for (const BeamEnd& end : ends) cells.push_back(to_subcells_or_throw(end.point, limits, cloud));
-
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (ends[i].is_hit) grid.update(cell_index(cells[i], limits.width), hit_table_);
+  if (!inserter_.insert(T_map_sensor.translation(), beam_ends(cloud, T_map_sensor, parameters_), grid)) {
+    throw InputError("probability grid: the cloud of node " + std::to_string(cloud.id) +
+                     " reaches outside the grid; make the grid's limits from the same clouds and poses");
   }
-  if (parameters_.insert_free_space) {
-    for (const SubcellPoint& end : cells) {
-      visit_ray(sensor, end, limits.width, [&](std::size_t index) { grid.update(index, miss_table_); });
-    }
-  }
-  grid.finish_update();
 }
 
 }  // namespace oort

@@ -24,8 +24,28 @@ struct BeamEnd {
 std::vector<BeamEnd> beam_ends(const PointCloud& cloud, const Pose2& T_map_sensor,
                                const OutputGridParameters& parameters);
 
-/// Inserts clouds into a grid: the cells of the hits get hit_probability, then the cells that beams crossed on their
-/// way get miss_probability. Each cell is updated at most once per cloud, so that hits win over misses.
+/// Inserts what beams say into a grid: the cells of the hits get hit_probability, then (with insert_free_space) the
+/// cells that beams crossed on their way get miss_probability. Each cell is updated at most once per call, so that hits
+/// win over misses.
+class BeamInserter {
+ public:
+  /// Throws ParameterError if a probability is not one.
+  explicit BeamInserter(const ProbabilityGridParameters& parameters);
+
+  /// `sensor`: where the beams start [m], in the grid's frame as their ends are. Returns false, with the grid
+  /// unchanged, if the sensor or an end lies outside the grid.
+  bool insert(const Eigen::Vector2d& sensor, const std::vector<BeamEnd>& ends, ProbabilityGrid& grid) const;
+
+  /// Grows the grid first, where it must. Throws InputError if the grid cannot grow so far.
+  void insert_growing(const Eigen::Vector2d& sensor, const std::vector<BeamEnd>& ends, ProbabilityGrid& grid) const;
+
+ private:
+  bool insert_free_space_;
+  OddsTable hit_table_;
+  OddsTable miss_table_;
+};
+
+/// Inserts clouds into a grid: what their beam_ends() say.
 class RangeDataInserter {
  public:
   /// Throws ParameterError if a probability is not one or inf_clear_dist is not a distance.
@@ -37,8 +57,7 @@ class RangeDataInserter {
 
  private:
   OutputGridParameters parameters_;
-  OddsTable hit_table_;
-  OddsTable miss_table_;
+  BeamInserter inserter_;
 };
 
 }  // namespace oort

@@ -5,18 +5,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "oort/mapping/frsm_setup.hpp"
-#include "oort/matching/frsm_adapter.hpp"
+#include "oort/mapping/match_gates.hpp"
 
 namespace oort {
 namespace {
-
-// Refusals of matches that are farther from odometry than match_filtering allows.
-constexpr const char* kTooFarX = "x";
-constexpr const char* kTooFarY = "y";
-constexpr const char* kTooFarTheta = "theta";
 
 // Surfaces in the local map are off by this much from one another [m], which turns a scan that sees little of them. Of
 // 60 degree views in simulated homes, links err by 0.014 rad where the returns lie within 0.5 m of their middle.
@@ -37,26 +30,6 @@ double extent_of(const frsm::Points& points) {
 // A match tells how good odometry is if so many of its returns hit.
 constexpr double kTellingHits = 0.8;
 
-frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
-  frsm::TrackerParams params;
-  params.table = table_params(p);
-  params.contours = frsm::ContourParams::urg();
-  params.matcher = matcher_params(p);
-  params.add = p.key_scan_distance > 0.0 ? frsm::AddRule{} : frsm::AddRule::by_hits(p.add_scan_hit_thresh);
-  if (p.key_scan_distance > 0.0) {
-    params.add.hit_threshold = p.add_scan_hit_thresh;
-    params.add.key_distance = p.key_scan_distance;
-    params.add.key_angle = p.key_scan_angle;
-  }
-  params.max_num_scans = p.max_num_scans;
-  params.initial_search_range_xy = p.initial_search_range_xy;
-  params.initial_search_range_theta = p.initial_search_range_theta;
-  params.max_search_range_xy = p.max_search_range_xy;
-  params.max_search_range_theta = p.max_search_range_theta;
-  params.stationary_motion_model = p.stationary_motion_model;
-  return params;
-}
-
 // Odometry and match contradict each other beyond this squared distance: once in 10^5 times by chance (chi-square of 3
 // degrees of freedom).
 constexpr double kContradiction = 25.9;
@@ -76,35 +49,40 @@ OdometryModel odometry_model(const OdometryNoiseParameters& p) {
 
 }  // namespace
 
+LinkParameters link_parameters(const IncrementalGraphBuilderParameters& parameters) {
+  const auto of = [](const auto& p, double min_hits, bool odometry_is_prior) {
+    return LinkParameters{p.scanmatch_cov_scale,
+                          p.inflate_scanmatch_cov_scale,
+                          p.resume_scanmatch_cov_scale,
+                          p.heading_error_per_meter,
+                          min_hits,
+                          odometry_is_prior};
+  };
+  if (parameters.scanmatcher == "cartographer_matcher") {
+    return of(parameters.cartographer_matcher, parameters.cartographer_matcher.min_sm_accept_score, false);
+  }
+  return of(parameters.frsm_matcher, parameters.frsm_matcher.match_filtering.min_accept_score, true);
+}
+
 IncrementalGraphBuilder::IncrementalGraphBuilder(const Parameters& parameters)
     : parameters_(parameters.incremental_graph_builder),
       motion_model_(parameters_.odometry_model == "motion"),
       odometry_model_(odometry_model(parameters_.odometry_noise), parameters_.odometry_noise.least_learned),
-      tracker_(tracker_params(parameters_.frsm_matcher)) {}
+      link_(link_parameters(parameters_)),
+      tracker_(make_scan_tracker(parameters_)) {}
 
 void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
-  tracker_.reset(to_frsm(T_local_sensor));
+  tracker_->reset(T_local_sensor);
 }
 
 TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor) {
-  const frsm::Motion motion{to_frsm(T_previous_sensor), prior_covariance(T_previous_sensor)};
-  const long restarts = tracker_.restarts();
-  const frsm::Match match = tracker_.track(points, time, motion);
-  TrackedScan tracked;
-  tracked.T_local_sensor = from_frsm(match.pose);
-  tracked.information = match.information;
-  tracked.covariance = match.covariance;
-  tracked.hit_fraction = match.hit_fraction;
+  TrackedScan tracked = tracker_->track(points, time, T_previous_sensor, prior_covariance(T_previous_sensor));
   tracked.extent = extent_of(points);
-  tracked.degenerate = match.degenerate;
-  tracked.usable = tracker_.matched();
-  tracked.restarted = tracker_.restarts() > restarts;
-  tracked.status = frsm::to_string(match.status);
   return tracked;
 }
 
 bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
-  return scan.usable && scan.hit_fraction >= parameters_.frsm_matcher.match_filtering.min_accept_score;
+  return scan.usable && scan.hit_fraction >= link_.min_hits;
 }
 
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
@@ -113,16 +91,16 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
   const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
-  link.refusal = refusal(node, T_odometry_match);
-  if (motion_model_ && node.hit_fraction >= kTellingHits &&
-      (link.refusal == kTooFarX || link.refusal == kTooFarY || link.refusal == kTooFarTheta)) {
+  link.refusal = match_refusal(parameters_, node, T_local_anchor, T_anchor_node_odometry);
+  const bool comparable = motion_model_ && link_.odometry_is_prior;
+  if (comparable && node.hit_fraction >= kTellingHits && is_too_far(link.refusal)) {
     link.contradicts_odometry = true;
     link.T_anchor_node_weighed = T_anchor_node_odometry;
   }
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
                                      link.T_anchor_node.translation().norm());
   if (motion_model_ && link.refusal.empty()) {
-    compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
+    if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
     const bool telling = !node.degenerate && node.hit_fraction >= kTellingHits;
     if (telling) odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
   }
@@ -130,17 +108,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
 }
 
 void IncrementalGraphBuilder::correct(const Pose2& T_local_sensor) {
-  tracker_.set_pose(to_frsm(T_local_sensor));
-}
-
-std::string IncrementalGraphBuilder::refusal(const TrackedScan& node, const Pose2& T_odometry_match) const {
-  const MatchFilteringParameters& filter = parameters_.frsm_matcher.match_filtering;
-  if (!node.usable) return node.status;
-  if (node.hit_fraction < filter.min_accept_score) return "score";
-  if (T_odometry_match.x < filter.x_min_accept || T_odometry_match.x > filter.x_max_accept) return kTooFarX;
-  if (std::abs(T_odometry_match.y) > filter.y_abs_accept) return kTooFarY;
-  if (std::abs(T_odometry_match.theta) > filter.theta_abs_accept) return kTooFarTheta;
-  return "";
+  tracker_->set_pose(T_local_sensor);
 }
 
 Eigen::Matrix3d IncrementalGraphBuilder::prior_covariance(const Pose2& T_before_after) const {
@@ -154,11 +122,8 @@ Eigen::Matrix3d IncrementalGraphBuilder::prior_covariance(const Pose2& T_before_
 
 Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_before_after,
                                                              const std::string& refusal) const {
-  using frsm::Status;
-  const bool undisputed = refusal.empty() || refusal == frsm::to_string(Status::kEmptyScan) ||
-                          refusal == frsm::to_string(Status::kTooFewPoints) ||
-                          refusal == frsm::to_string(Status::kNoOverlap);
   if (motion_model_) {
+    const bool undisputed = refusal.empty() || nothing_was_seen(refusal);
     return undisputed ? odometry_model_.covariance(T_before_after) : odometry_model_.model().covariance(T_before_after);
   }
   return Eigen::Vector3d(parameters_.odom_cov_xx, parameters_.odom_cov_yy, parameters_.odom_cov_tt).asDiagonal();
@@ -166,12 +131,12 @@ Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_befo
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& node, double heading,
                                                           const Eigen::Matrix3d& others, double distance) const {
-  const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
+  const double scale = link_.scanmatch_cov_scale;
   Eigen::Matrix3d covariance;
   if (motion_model_) {
     // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
     covariance = (match_information(node, heading) + others.inverse()).inverse();
-    const double heading_error = parameters_.frsm_matcher.heading_error_per_meter * distance;
+    const double heading_error = link_.heading_error_per_meter * distance;
     const double turn = kSurfaceError / std::max(node.extent, kLeastExtent);
     covariance(2, 2) += heading_error * heading_error + turn * turn;
   } else {
@@ -200,7 +165,7 @@ void IncrementalGraphBuilder::compare(const TrackedScan& node, double heading, c
 }
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_information(const TrackedScan& node, double heading) const {
-  const double scale = parameters_.frsm_matcher.scanmatch_cov_scale;
+  const double scale = link_.scanmatch_cov_scale;
   return rotate_covariance(node.information, -heading) / (scale * scale);
 }
 

@@ -2,28 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <frsm/tracker.hpp>
+#include <frsm/types.hpp>
+#include <memory>
 #include <string>
 
 #include "oort/geometry/pose2.hpp"
 #include "oort/graph/graph.hpp"
 #include "oort/mapping/odometry_model.hpp"
+#include "oort/mapping/scan_tracker.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
-
-/// Where the scan matcher says the sensor is, in its own ("local") frame.
-struct TrackedScan {
-  Pose2 T_local_sensor;
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the match alone, axes of the local frame
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the match and what was expected, same axes
-  double hit_fraction = 0.0;
-  double extent = 0.0;      ///< root mean square distance of the returns from their middle [m]
-  bool degenerate = false;  ///< the match leaves a direction open
-  bool usable = false;
-  bool restarted = false;  ///< a fresh local map begins with this scan: the old one did not fit any more
-  std::string status;
-};
 
 /// What the scan matcher says of a node, seen from the last node of its segment whose match was believed.
 struct MatchLink {
@@ -31,11 +20,24 @@ struct MatchLink {
   Eigen::Matrix3d covariance;  ///< along the axes of the anchor
   std::string refusal;         ///< why it is not to be believed; empty when it is
   /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
-  /// constant odometry model, nor of a match that is refused for what it is. Of one that only match_filtering refuses
-  /// odometry's pose counts.
+  /// constant odometry model, nor with a matcher that does not have odometry as its prior, nor of a match that is
+  /// refused for what it is. Of one that is refused only for how far it is from odometry, odometry's pose counts.
   bool contradicts_odometry = false;
   Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
+
+/// What the chosen matcher's section says of links.
+struct LinkParameters {
+  double scanmatch_cov_scale = 1.0;          ///< factors on standard deviations: of matches,
+  double inflate_scanmatch_cov_scale = 1.0;  ///< of the first link after a pause,
+  double resume_scanmatch_cov_scale = 1.0;   ///< and of a session's first
+  double heading_error_per_meter = 0.0;      ///< [rad/m]
+  double min_hits = 0.0;                     ///< least share of hits of a match that is believed
+  /// Whether odometry, as uncertain as it is, is the matcher's prior, so that a match farther from it contradicts it.
+  bool odometry_is_prior = false;
+};
+
+LinkParameters link_parameters(const IncrementalGraphBuilderParameters& parameters);
 
 /// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
 /// (REQUIREMENTS O-84, O-85).
@@ -75,7 +77,6 @@ class IncrementalGraphBuilder {
   Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after, const std::string& refusal = "") const;
 
  private:
-  std::string refusal(const TrackedScan& node, const Pose2& T_odometry_match) const;
   Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;
   Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& others,
                                    double distance) const;
@@ -85,7 +86,8 @@ class IncrementalGraphBuilder {
   IncrementalGraphBuilderParameters parameters_;
   bool motion_model_;  // odometry's covariance grows with the motion, else it is constant
   LearnedOdometry odometry_model_;
-  frsm::Tracker tracker_;
+  LinkParameters link_;
+  std::unique_ptr<ScanTracker> tracker_;
 };
 
 }  // namespace oort

@@ -34,11 +34,24 @@ constexpr double kFar = 0.5;        // [m]
 constexpr double kFarAngle = 0.15;  // [rad]
 constexpr const char* kUnconfirmed = "unconfirmed";
 
-LoopScale scan_scale(const LoopClosureGraphBuilderParameters& p) {
+LoopSearch loop_search(const LoopClosureGraphBuilderParameters& parameters) {
+  if (parameters.scanmatcher == "branch_and_bound_matcher") {
+    const BranchAndBoundMatcherParameters& p = parameters.branch_and_bound_matcher;
+    const FastCorrelativeScanMatcherParameters& window = p.fast_correlative_scan_matcher;
+    return {window.linear_search_window, window.angular_search_window, p.search_window_sigmas, p.min_facing_share,
+            p.match_filter};
+  }
+  const FrsmLoopMatcherParameters& p = parameters.frsm_matcher;
+  return {p.search_window_xy, p.search_window_theta, p.search_window_sigmas, p.min_facing_share, p.match_filter};
+}
+
+LoopScale scan_scale(const LoopClosureGraphBuilderParameters& p, const LoopSearch& search) {
   LoopScale scale;
-  scale.query_nodes = static_cast<std::uint64_t>(p.frsm_matcher.query_neighborhood_size);
+  if (p.scanmatcher == "frsm_matcher") {
+    scale.query_nodes = static_cast<std::uint64_t>(p.frsm_matcher.query_neighborhood_size);
+  }
   scale.submap_nodes = static_cast<std::uint64_t>(p.candidate_search.submap_neighborhood_size);
-  if (p.frsm_matcher.search_window_sigmas > 0.0) {
+  if (search.is_adaptive()) {
     scale.sigma_xy = kScanSigma;
     scale.sigma_theta = kScanSigmaTheta;
   }
@@ -97,18 +110,18 @@ std::string refusal(const MatchFilterParameters& filter, double hits, const Diff
 
 LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
     : parameters_(parameters.loop_closure_graph_builder),
-      scan_matcher_(parameters, scan_scale(parameters_)),
-      way_matcher_(parameters, kWay) {}
+      search_(loop_search(parameters_)),
+      scan_matcher_(make_loop_matcher(parameters, scan_scale(parameters_, search_))),
+      way_matcher_(make_loop_matcher(parameters, kWay)) {}
 
 void LoopClosureBuilder::look(const Map& map, const Chains& chains, std::uint64_t query) {
-  const bool adaptive = parameters_.frsm_matcher.search_window_sigmas > 0.0;
-  if (adaptive) {
+  if (search_.is_adaptive()) {
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
   }
   for (const std::uint64_t candidate : candidates(map, chains, query)) {
     const SearchWindow window = this->window(map, query, candidate);
-    const bool wide = adaptive && is_wide(window);
+    const bool wide = search_.is_adaptive() && is_wide(window);
     if (wide && is_seeking(chains, query)) waiting_.push_back({query, candidate, narrowed(window)});
     if (wide && query % kWideStride != 0) continue;
     waiting_.push_back({query, candidate, window});
@@ -215,53 +228,52 @@ std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pa
 }
 
 SearchWindow LoopClosureBuilder::window(const Map& map, std::uint64_t query, std::uint64_t candidate) const {
-  const FrsmLoopMatcherParameters& p = parameters_.frsm_matcher;
-  const double sigmas = p.search_window_sigmas;
+  const double sigmas = search_.window_sigmas;
   const auto variances = [](double xy, double theta) {
     return Eigen::Matrix3d(Eigen::Vector3d(xy * xy, xy * xy, theta * theta).asDiagonal());
   };
   if (sigmas == 0.0 || !from_query_[candidate]) {
-    return {p.search_window_xy, p.search_window_theta, variances(p.search_window_xy, p.search_window_theta)};
+    return {search_.window_xy, search_.window_theta, variances(search_.window_xy, search_.window_theta)};
   }
   const Pose2& T_map_query = map.graph.nodes[query].pose;
   const Eigen::Matrix3d covariance = inverse_covariance(between(T_map_query, map.graph.nodes[candidate].pose),
                                                         rotate_covariance(*from_query_[candidate], -T_map_query.theta));
   SearchWindow window;
-  window.xy =
-      std::clamp(sigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace()), kLeastWindow, p.search_window_xy);
-  window.theta = std::clamp(sigmas * std::sqrt(covariance(2, 2)), kLeastWindowTheta, p.search_window_theta);
+  const double wanted_xy = sigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace());
+  window.xy = std::min(std::max(wanted_xy, kLeastWindow), search_.window_xy);
+  window.theta = std::min(std::max(sigmas * std::sqrt(covariance(2, 2)), kLeastWindowTheta), search_.window_theta);
   // As a prior it is taken for twice as uncertain: what lies near the border is unlikely, not impossible.
   window.covariance = 0.25 * (sigmas * sigmas * covariance + variances(kLeastWindow, kLeastWindowTheta));
   return window;
 }
 
 LoopMatcher& LoopClosureBuilder::matcher_for(const Attempt& attempt) {
-  return is_wide(attempt.window) && parameters_.frsm_matcher.search_window_sigmas > 0.0 ? way_matcher_ : scan_matcher_;
+  return *(is_wide(attempt.window) && search_.is_adaptive() ? way_matcher_ : scan_matcher_);
 }
 
 LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chains, const Attempt& attempt) {
-  const FrsmLoopMatcherParameters& p = parameters_.frsm_matcher;
   const auto [query, candidate, window] = attempt;
   LoopMatcher::Found found = matcher_for(attempt).find(map, chains, query, candidate, window);
   if (!found.refusal.empty()) return found;
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const Pose2 moved = between(expected, found.T_candidate_query);
   found.refusal =
-      refusal(p.match_filter, found.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
+      refusal(search_.match_filter, found.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
               is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
-              std::abs(expected.theta) >= p.match_filter.opposite_dir_threshold);
+              std::abs(expected.theta) >= search_.match_filter.opposite_dir_threshold);
   if (!found.refusal.empty()) return found;
   const FacingMap facing(map, chains, candidate,
                          chains.neighborhood(candidate, static_cast<std::uint64_t>(
                                                             parameters_.candidate_search.submap_neighborhood_size)));
-  if (facing.agreement(surface_points(returns_of(map.clouds[query])), found.T_candidate_query) < p.min_facing_share) {
+  if (facing.agreement(surface_points(returns_of(map.clouds[query])), found.T_candidate_query) <
+      search_.min_facing_share) {
     found.refusal = "other_side";
   }
   return found;
 }
 
 bool LoopClosureBuilder::must_be_confirmed(const Map& map, const Closure& closure) const {
-  if (parameters_.frsm_matcher.search_window_sigmas == 0.0) return false;
+  if (!search_.is_adaptive()) return false;
   const Pose2 expected = between(map.graph.nodes[closure.from].pose, map.graph.nodes[closure.to].pose);
   const Pose2 moved = between(expected, closure.T_from_to);
   return moved.translation().norm() >= kFar || std::abs(moved.theta) >= kFarAngle;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,6 +20,17 @@
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
+
+/// How far loops are looked for and what is believed, by the matcher that loop_closure_graph_builder.scanmatcher names.
+struct LoopSearch {
+  double window_xy = 0.0;      ///< widest half width [m]
+  double window_theta = 0.0;   ///< widest half width [rad]
+  double window_sigmas = 0.0;  ///< half width by the graph's uncertainty [standard deviations]; 0: always the widest
+  double min_facing_share = 0.0;
+  MatchFilterParameters match_filter;
+
+  bool is_adaptive() const { return window_sigmas > 0.0; }
+};
 
 /// Looks for places seen before and measures where the newest node stands in their submaps (REQUIREMENTS O-86, O-87).
 ///
@@ -61,8 +73,9 @@ class LoopClosureBuilder {
   bool must_be_confirmed(const Map& map, const Closure& closure) const;
 
   LoopClosureGraphBuilderParameters parameters_;
-  LoopMatcher scan_matcher_;
-  LoopMatcher way_matcher_;
+  LoopSearch search_;
+  std::unique_ptr<LoopMatcher> scan_matcher_;
+  std::unique_ptr<LoopMatcher> way_matcher_;
   RelativeUncertainty uncertainty_;
   std::vector<std::optional<Eigen::Matrix3d>> from_query_;  // covariance of T_query_node by node, along the map's axes
   ClosureConfirmation confirmation_;

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
-#include <frsm/matcher.hpp>
-#include <optional>
+#include <memory>
 #include <string>
 
 #include "oort/mapping/chains.hpp"
 #include "oort/mapping/map.hpp"
-#include "oort/mapping/submaps.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -31,14 +30,17 @@ struct LoopScale {
   double sigma_xy = 0.0;            ///< how far the chains are bent over the nodes that are matched [m]
   double sigma_theta = 0.0;         ///< [rad]
   double reach = 1e3;               ///< returns farther from their sensor are left out [m]
+
+  /// The covariance of how far the chains are bent, in x, y, theta.
+  Eigen::Matrix3d bend() const { return Eigen::Vector3d(sigma_xy, sigma_xy, sigma_theta).cwiseAbs2().asDiagonal(); }
 };
 
-/// Measures where a node stands in the submap of another: roughly over the whole window by branch and bound, then
-/// finely around the best (REQUIREMENTS O-87).
+/// Of submaps in memory at once: enough for the places a robot passes between two visits to one of them.
+constexpr std::size_t kSubmapCacheBytes = std::size_t{128} << 20;
+
+/// Measures where a node stands in the submap of another.
 class LoopMatcher {
  public:
-  LoopMatcher(const Parameters& parameters, const LoopScale& scale);
-
   struct Found {
     Pose2 T_candidate_query;     ///< the best there is, believed or not
     Eigen::Matrix3d covariance;  ///< along the axes of the candidate
@@ -46,21 +48,17 @@ class LoopMatcher {
     std::string refusal;  ///< why it is not to be believed; empty when it is
   };
 
-  Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
-             const SearchWindow& window);
+  virtual ~LoopMatcher() = default;
+
+  virtual Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
+                     const SearchWindow& window) = 0;
 
   /// Draws the next scans of the candidate's submap, so that find() need not draw them all at once. False if there was
   /// nothing left to draw.
-  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate);
-
- private:
-  bool is_small(const Chains& chains, std::uint64_t candidate) const;
-
-  FrsmLoopMatcherParameters parameters_;
-  LoopScale scale_;
-  frsm::TableParams table_;
-  SubmapCache submaps_;
-  frsm::Matcher matcher_;
+  virtual bool draw(const Map& map, const Chains& chains, std::uint64_t candidate) = 0;
 };
+
+/// The matcher that loop_closure_graph_builder.scanmatcher names.
+std::unique_ptr<LoopMatcher> make_loop_matcher(const Parameters& parameters, const LoopScale& scale);
 
 }  // namespace oort

@@ -213,7 +213,7 @@ std::uint64_t Mapper::make_node(LastScan& scan) {
   if (next_link_ == NextLink::kChain) {
     step = link_to_chain(scan, node);
   } else {
-    const FrsmMatcherParameters& p = parameters_.incremental_graph_builder.frsm_matcher;
+    const LinkParameters p = link_parameters(parameters_.incremental_graph_builder);
     map_.incremental_results.push_back(
         {node.id, node.id, scan.tracked.T_local_sensor, inflated_covariance(p.scanmatch_cov_scale), Pose2{}, 0.0});
     if (next_link_ == NextLink::kPaused) {
@@ -374,6 +374,8 @@ OptimizerSummary Mapper::solve(int max_iterations, std::uint64_t first_free_node
   const WorkClock clock(work_seconds_.solving);
   OptimizerOptions options;
   options.switchable_constraint_scale = parameters_.switchable_constraint_scale;
+  options.robust_kernel = parameters_.robust_kernel == "huber" ? RobustKernel::kHuber : RobustKernel::kSwitchable;
+  options.huber_scale = parameters_.huber_scale;
   options.max_iterations = max_iterations;
   options.first_free_node = first_free_node;
   const OptimizerSummary summary = optimize(map_.graph, options);

@@ -41,54 +41,17 @@ frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t o
   return points;
 }
 
-SubmapCache::SubmapCache(std::uint64_t neighborhood_size, std::size_t max_bytes, const frsm::TableParams& table,
-                         const frsm::ContourParams& contours)
-    : neighborhood_size_(neighborhood_size), max_bytes_(max_bytes), table_(table), contours_(contours) {}
-
-std::shared_ptr<const frsm::Table> SubmapCache::get(const Map& map, const Chains& chains, std::uint64_t node) {
-  const std::vector<std::uint64_t> nodes = chains.neighborhood(node, neighborhood_size_);
-  Entry& entry = latest(node);
-  draw_more(map, chains, nodes, nodes.size(), entry);
-  forget_oldest();
-  return entries_.front().table;
-}
-
-bool SubmapCache::draw(const Map& map, const Chains& chains, std::uint64_t node, std::uint64_t scans) {
-  const std::vector<std::uint64_t> nodes = chains.neighborhood(node, neighborhood_size_);
-  Entry& entry = latest(node);
-  if (entry.drawn == nodes.size()) return false;
-  draw_more(map, chains, nodes, std::min<std::size_t>(nodes.size(), entry.drawn + scans), entry);
-  return true;
-}
-
-SubmapCache::Entry& SubmapCache::latest(std::uint64_t node) {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [node](const Entry& entry) { return entry.node == node; });
-  if (found != entries_.end()) {
-    entries_.splice(entries_.begin(), entries_, found);
-  } else {
-    entries_.push_front({node, std::make_shared<frsm::Table>(table_), 0});
-  }
-  return entries_.front();
-}
-
-void SubmapCache::draw_more(const Map& map, const Chains& chains, const std::vector<std::uint64_t>& nodes,
-                            std::size_t end, Entry& entry) const {
-  for (; entry.drawn < end; ++entry.drawn) {
-    draw_scan(map, chains, entry.node, nodes[entry.drawn], contours_, *entry.table);
-  }
-}
-
-// Tables grow after they were handed out, when their bounds for branch and bound are built: they are counted anew.
-void SubmapCache::forget_oldest() {
-  std::size_t bytes = 0;
-  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
-    bytes += entry->table->bytes();
-    if (bytes > max_bytes_ && entry != entries_.begin()) {
-      entries_.erase(entry, entries_.end());
-      break;
-    }
-  }
+SubmapCache<frsm::Table> table_cache(std::uint64_t neighborhood_size, std::size_t max_bytes,
+                                     const frsm::TableParams& table, const frsm::ContourParams& contours) {
+  return {neighborhood_size, max_bytes,
+          [table, contours](const Map& map, const Chains& chains, std::uint64_t node,
+                            const std::vector<std::uint64_t>& nodes, std::size_t drawn,
+                            const std::shared_ptr<frsm::Table>& so_far) {
+            auto drawing = drawn > 0 ? so_far : std::make_shared<frsm::Table>(table);
+            for (std::size_t k = drawn; k < nodes.size(); ++k)
+              draw_scan(map, chains, node, nodes[k], contours, *drawing);
+            return drawing;
+          }};
 }
 
 }  // namespace oort

@@ -6,12 +6,12 @@
 #include <frsm/contours.hpp>
 #include <frsm/table.hpp>
 #include <limits>
-#include <list>
 #include <memory>
 #include <vector>
 
 #include "oort/mapping/chains.hpp"
 #include "oort/mapping/map.hpp"
+#include "oort/mapping/submap_cache.hpp"
 
 namespace oort {
 
@@ -26,35 +26,8 @@ frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t o
                            const std::vector<std::uint64_t>& nodes,
                            double reach = std::numeric_limits<double>::infinity());
 
-/// Submaps of nodes, each drawn when it is first asked for and again after it fell out of the cache. A submap shows a
-/// node's neighbourhood in the frame of the node; since it is made from poses that never change, what is cached only
-/// decides how long a query takes, never its result.
-class SubmapCache {
- public:
-  SubmapCache(std::uint64_t neighborhood_size, std::size_t max_bytes, const frsm::TableParams& table,
-              const frsm::ContourParams& contours);
-
-  std::shared_ptr<const frsm::Table> get(const Map& map, const Chains& chains, std::uint64_t node);
-
-  /// Draws at most so many more scans of a node's submap. False if it was drawn already.
-  bool draw(const Map& map, const Chains& chains, std::uint64_t node, std::uint64_t scans);
-
- private:
-  struct Entry {
-    std::uint64_t node;
-    std::shared_ptr<frsm::Table> table;
-    std::size_t drawn;  // scans; the neighbourhood grows at its end while its node is among the newest
-  };
-  Entry& latest(std::uint64_t node);
-  void draw_more(const Map& map, const Chains& chains, const std::vector<std::uint64_t>& nodes, std::size_t end,
-                 Entry& entry) const;
-  void forget_oldest();
-
-  std::uint64_t neighborhood_size_;
-  std::size_t max_bytes_;
-  frsm::TableParams table_;
-  frsm::ContourParams contours_;
-  std::list<Entry> entries_;  // most recently used first
-};
+/// The submaps that FRSM matches against.
+SubmapCache<frsm::Table> table_cache(std::uint64_t neighborhood_size, std::size_t max_bytes,
+                                     const frsm::TableParams& table, const frsm::ContourParams& contours);
 
 }  // namespace oort

@@ -15,6 +15,13 @@ frsm::Points returns_of(const PointCloud& cloud) {
   return points;
 }
 
+Points to_points(const frsm::Points& points) {
+  Points same;
+  same.reserve(points.size());
+  for (const frsm::Point& p : points) same.emplace_back(p.x, p.y);
+  return same;
+}
+
 void append_transformed(const frsm::Points& points_b, const Pose2& T_a_b, frsm::Points& points_a) {
   const double c = std::cos(T_a_b.theta);
   const double s = std::sin(T_a_b.theta);

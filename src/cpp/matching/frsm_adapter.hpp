@@ -4,6 +4,7 @@
 #include <frsm/types.hpp>
 
 #include "oort/geometry/point_cloud.hpp"
+#include "oort/geometry/points.hpp"
 #include "oort/geometry/pose2.hpp"
 
 namespace oort {
@@ -17,6 +18,9 @@ inline Pose2 from_frsm(const frsm::Pose& pose) {
 
 /// The returns of a cloud in beam order, in the sensor frame.
 frsm::Points returns_of(const PointCloud& cloud);
+
+/// The same points in the same order.
+Points to_points(const frsm::Points& points);
 
 /// Appends points, taken to another frame.
 void append_transformed(const frsm::Points& points_b, const Pose2& T_a_b, frsm::Points& points_a);

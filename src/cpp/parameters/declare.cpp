@@ -57,11 +57,9 @@ T of_type(const ParameterEntry& entry, const ParameterValue& value) {
 }
 
 void check_text(const ParameterEntry& entry, const std::string& text) {
-  const auto among = [&](const std::vector<std::string>& choices) {
-    return std::find(choices.begin(), choices.end(), text) != choices.end();
-  };
-  if (among(entry.later_choices)) refuse(entry, text, "is not available in this version");
-  if (text.empty() || (!entry.choices.empty() && !among(entry.choices))) refuse(entry, text, "is not allowed");
+  const std::vector<std::string>& choices = entry.choices;
+  const bool is_choice = choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end();
+  if (text.empty() || !is_choice) refuse(entry, text, "is not allowed");
 }
 
 }  // namespace
@@ -157,7 +155,6 @@ DeclaredParameter& Section::operator()(std::string& field, const char* name, con
   ParameterEntry entry;
   entry.default_value = std::string(text.value);
   entry.choices = text.choices;
-  entry.later_choices = text.later_choices;
   return add(name, meaning, std::move(entry), &field);
 }
 

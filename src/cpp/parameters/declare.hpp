@@ -28,7 +28,6 @@ struct Real {
 struct Text {
   const char* value;
   std::vector<std::string> choices = {};
-  std::vector<std::string> later_choices = {};
 };
 
 /// A row bound to the field that holds its value.
@@ -83,5 +82,8 @@ void declare_localization(const Section& section, LocalizationParameters& p);
 
 /// The three keys that every probability grid has beside its resolution.
 void declare_grid_probabilities(const Section& section, ProbabilityGridParameters& p, bool insert_free_space);
+
+/// The last two of them.
+void declare_hit_and_miss(const Section& section, ProbabilityGridParameters& p);
 
 }  // namespace oort

@@ -26,6 +26,12 @@ void declare_general(const Section& v, Parameters& p) {
            "The median error of 20 made-up homes falls from 0.013 m to 0.007 m, with a view of 90 degrees from 0.037 m "
            "to "
            "0.024 m; Intel with readings cut at 3 m from 0.0177 m to 0.0165 m.");
+  v(p.robust_kernel, "robust_kernel", {"switchable", {"switchable", "huber"}},
+    "How a loop closure that disagrees loses its weight: by a switch, or, as in Cartographer, by Huber's loss.")
+      .own("switchable");
+  v(p.huber_scale, "huber_scale", {10.0, "standard deviations", {1e-3, 1e6}},
+    "From this error on a closure's cost grows in proportion to it, not to its square; with robust_kernel huber.")
+      .own(10.0);
 }
 
 void declare_dock(const Section& v, DockGraphBuilderParameters& p) {

@@ -137,10 +137,10 @@ void declare_incremental(const Section& v, IncrementalGraphBuilderParameters& p)
     "odom_cov_* for links.")
       .own("constant", "A link's weight follows from how far the robot moved: Intel 0.0127 m instead of 0.0130 m.");
   declare_odometry_noise(v.section("odometry_noise"), p.odometry_noise);
-  v(p.scanmatcher, "scanmatcher", {"frsm_matcher", {"frsm_matcher"}, {"cartographer_matcher"}},
+  v(p.scanmatcher, "scanmatcher", {"frsm_matcher", {"frsm_matcher", "cartographer_matcher"}},
     "The matcher that links consecutive nodes.");
   declare_frsm_matcher(v.section("frsm_matcher"), p.frsm_matcher);
-  declare_cartographer_matcher(v.section("cartographer_matcher", ParameterStatus::kLater), p.cartographer_matcher);
+  declare_cartographer_matcher(v.section("cartographer_matcher"), p.cartographer_matcher);
 }
 
 }  // namespace oort

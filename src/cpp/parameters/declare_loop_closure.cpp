@@ -56,7 +56,7 @@ void declare_match_filter(const Section& v, MatchFilterParameters& p) {
 
 void declare_loop_closure(const Section& v, LoopClosureGraphBuilderParameters& p) {
   declare_candidate_search(v.section("candidate_search"), p.candidate_search);
-  v(p.scanmatcher, "scanmatcher", {"frsm_matcher", {"frsm_matcher"}, {"branch_and_bound_matcher"}},
+  v(p.scanmatcher, "scanmatcher", {"frsm_matcher", {"frsm_matcher", "branch_and_bound_matcher"}},
     "The matcher that closes loops.");
   const Section frsm = v.section("frsm_matcher");
   frsm(p.frsm_matcher.submap_min_neighborhood_size, "submap_min_neighborhood_size", {3, "nodes", {1, 10000}},
@@ -84,8 +84,7 @@ void declare_loop_closure(const Section& v, LoopClosureGraphBuilderParameters& p
       "from both sides.")
       .own(0.0, "Matches through walls are off by the walls' thickness.");
   declare_match_filter(frsm.section("match_filter"), p.frsm_matcher.match_filter);
-  declare_branch_and_bound_matcher(v.section("branch_and_bound_matcher", ParameterStatus::kLater),
-                                   p.branch_and_bound_matcher);
+  declare_branch_and_bound_matcher(v.section("branch_and_bound_matcher"), p.branch_and_bound_matcher);
 }
 
 }  // namespace oort

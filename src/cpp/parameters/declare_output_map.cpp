@@ -8,6 +8,10 @@ namespace oort {
 void declare_grid_probabilities(const Section& v, ProbabilityGridParameters& p, bool insert_free_space) {
   v(p.insert_free_space, "insert_free_space", insert_free_space,
     "Whether cells that a beam crosses are updated as free.");
+  declare_hit_and_miss(v, p);
+}
+
+void declare_hit_and_miss(const Section& v, ProbabilityGridParameters& p) {
   v(p.hit_probability, "hit_probability", {0.55, "probability", {0.501, 0.999}},
     "A hit multiplies the odds of its cell by the odds of this.");
   v(p.miss_probability, "miss_probability", {0.49, "probability", {0.001, 0.499}},

@@ -128,8 +128,12 @@ struct CartographerMatcherParameters : ProbabilityGridParameters {
   double angular_search_window;
   double translation_delta_cost_weight;
   double rotation_delta_cost_weight;
+  double key_scan_distance;
+  double key_scan_angle;
+  double max_point_range;
   bool use_ceres_refinement;
   GridCeresScanMatcherParameters ceres_scan_matcher;
+  double heading_error_per_meter;
   double scanmatch_cov_scale;
   double inflate_scanmatch_cov_scale;
   double resume_scanmatch_cov_scale;
@@ -210,6 +214,8 @@ struct BranchAndBoundMatcherParameters {
   int submap_min_neighborhood_size;
   double global_localization_min_score;
   double min_score;
+  double search_window_sigmas;
+  double min_facing_share;
   ProbabilityGridParameters probability_grid;
   AdaptiveVoxelFilterParameters adaptive_voxel_filter;
   FastCorrelativeScanMatcherParameters fast_correlative_scan_matcher;
@@ -274,6 +280,8 @@ struct Parameters {
   int min_pointcloud_size;
   double switchable_constraint_scale;
   bool final_refinement;
+  std::string robust_kernel;
+  double huber_scale;
   OutputMapParameters output_map;
   IncrementalGraphBuilderParameters incremental_graph_builder;
   LoopClosureGraphBuilderParameters loop_closure_graph_builder;

@@ -31,10 +31,9 @@ struct ParameterEntry {
   std::string path;  ///< "output_map.median.iter"
   std::string unit;  ///< "" where it has none
   ParameterValue default_value;
-  ParameterValue documented_value;         ///< for Oort's own keys: the value that gives the documented behaviour
-  std::optional<Range> range;              ///< of numbers
-  std::vector<std::string> choices;        ///< of a text that takes only these
-  std::vector<std::string> later_choices;  ///< documented choices that this version does not have
+  ParameterValue documented_value;   ///< for Oort's own keys: the value that gives the documented behaviour
+  std::optional<Range> range;        ///< of numbers
+  std::vector<std::string> choices;  ///< of a text that takes only these
   std::string meaning;
   std::string reason;  ///< why the default differs from the documented value; "" where it does not
   ParameterStatus status = ParameterStatus::kUsed;

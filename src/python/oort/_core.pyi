@@ -42,8 +42,6 @@ class ParameterEntry:
     @property
     def choices(self) -> list[str]: ...
     @property
-    def later_choices(self) -> list[str]: ...
-    @property
     def meaning(self) -> str: ...
     @property
     def reason(self) -> str: ...
@@ -170,6 +168,19 @@ class Whitening:
     @property
     def value(self) -> int: ...
 
+class RobustKernel:
+    """How a switchable link that disagrees loses its weight."""
+
+    SWITCHABLE: ClassVar[RobustKernel]
+    """by its switch"""
+    HUBER: ClassVar[RobustKernel]
+    """its cost grows in proportion to its error, no longer its square"""
+    def __init__(self, value: int) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
 class OptimizerOptions:
     """How the pose graph is solved."""
 
@@ -181,6 +192,9 @@ class OptimizerOptions:
     """Whether links that disagree with the optimum of the switches (at 95 %) are then left out."""
     first_free_node: int
     """Nodes before this one keep their poses."""
+    robust_kernel: RobustKernel
+    huber_scale: float
+    """Standard deviations from which on a link's cost is no longer squared, with HUBER."""
     def __init__(
         self,
         *,
@@ -189,6 +203,8 @@ class OptimizerOptions:
         max_iterations: int = 50,
         decide: bool = True,
         first_free_node: int = 0,
+        robust_kernel: RobustKernel = ...,
+        huber_scale: float = 10.0,
     ) -> None: ...
 
 class OptimizerSummary:
@@ -464,4 +480,20 @@ def optimize_map(map: Map, options: OptimizerOptions = ...) -> OptimizerSummary:
 
     No other thread may use the map meanwhile. Returns the summary. Raises InputError and ParameterError; the map is
     then unchanged.
+    """
+
+def optimize_map_with_landmarks(
+    map: Map,
+    times: ArrayLike,
+    landmarks: ArrayLike,
+    measurements: ArrayLike,
+    covariances: ArrayLike,
+    options: OptimizerOptions = ...,
+) -> tuple[dict[int, _Pose], OptimizerSummary]:
+    """Solves the pose graph of a map in place, always with Huber's loss, together with landmarks.
+
+    Landmarks are known again when they are seen: for each of M observations the time (M,) [s], which landmark it is
+    (M,), its pose in the sensor frame (M, 3), and the covariance of that (M, 3, 3). The sensor is where it was between
+    the two nodes made before and after. Returns (pose in the map by landmark, summary). Raises InputError and
+    ParameterError; the map is then unchanged.
     """

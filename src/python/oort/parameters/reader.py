@@ -10,7 +10,7 @@ from oort._core import Parameters, parameter_table
 from oort.errors import ParameterError
 from oort.parameters.relaxed_json import Section, parse
 
-PRESETS = ("params", "kuri_original")
+PRESETS = ("params", "kuri_original", "cartographer")
 """The files that Oort ships: the defaults, and the documented values."""
 
 
@@ -36,7 +36,8 @@ def read_parameters(path: str | Path | None = None) -> Parameters:
 
 
 def packaged_path(name: str = "params") -> Path:
-    """The path of a shipped file: ``params`` (the defaults) or ``kuri_original`` (the documented values)."""
+    """The path of a shipped file: ``params`` (the defaults), ``kuri_original`` (the documented values) or
+    ``cartographer`` (the defaults with Cartographer's matchers)."""
     if name not in PRESETS:
         raise ParameterError(f'there are no packaged parameters "{name}"; there are {" and ".join(PRESETS)}')
     package = Path(__file__).resolve().parents[1]
@@ -49,7 +50,8 @@ def packaged_path(name: str = "params") -> Path:
 
 
 def packaged_parameters(name: str = "params") -> Parameters:
-    """Reads a shipped file: ``params`` (the defaults) or ``kuri_original`` (the documented values)."""
+    """Reads a shipped file: ``params`` (the defaults), ``kuri_original`` (the documented values) or
+    ``cartographer`` (the defaults with Cartographer's matchers)."""
     return read_parameters(packaged_path(name))
 
 

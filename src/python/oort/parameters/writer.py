@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes what is made from the table of parameters: the two shipped files and docs/parameters.md."""
+"""Writes what is made from the table of parameters: the shipped files and docs/parameters.md."""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
@@ -14,13 +14,20 @@ _HEADER = """<!-- SPDX-FileCopyrightText: 2026 The Oort authors -->
 <!-- Written by `python -m oort.parameters write .` from the table in src/cpp/parameters: do not edit. -->
 # Parameters
 
-`params/params.json` holds the defaults, `params/kuri_original.json` the documented values. A file of your own needs
-only the keys that differ from the defaults. It may be strict JSON, or have comments (`#`, `//`), a comma too few
-between members or one after the last. A key given twice is a warning and the last one counts; an unknown key, a value
-of the wrong type or out of its range is an error that names the file, the line and the key.
+`params/params.json` holds the defaults, `params/kuri_original.json` the documented values, and
+`params/cartographer.json` the defaults with Cartographer's matchers chosen ([matchers.md](matchers.md)). A file of your
+own needs only the keys that differ from the defaults. It may be strict JSON, or have comments (`#`, `//`), a comma too
+few between members or one after the last. A key given twice is a warning and the last one counts; an unknown key, a
+value of the wrong type or out of its range is an error that names the file, the line and the key.
 
 A dot stands for a section: `output_map.robot_radius` is `{"output_map": {"robot_radius": 0.15}}`.
 """
+_CARTOGRAPHER = {
+    "incremental_graph_builder.scanmatcher": "cartographer_matcher",
+    "loop_closure_graph_builder.scanmatcher": "branch_and_bound_matcher",
+}
+"""What params/cartographer.json chooses."""
+
 _EFFECTLESS = {
     "documented_unused": "documented as unused",
     "later": "belongs to a part that this version does not have",
@@ -30,8 +37,10 @@ _EFFECTLESS = {
 def files() -> dict[str, str]:
     """The content of each file by its path in the project."""
     table = parameter_table()
+    defaults = {entry.path: entry.default for entry in table}
     return {
-        "params/params.json": to_json({entry.path: entry.default for entry in table}),
+        "params/params.json": to_json(defaults),
+        "params/cartographer.json": to_json(defaults | _CARTOGRAPHER),
         "params/kuri_original.json": to_json({entry.path: entry.documented for entry in table}),
         "docs/parameters.md": documentation(table),
     }
@@ -111,5 +120,4 @@ def _range(entry: ParameterEntry) -> str:
         return f"{'integer ' if entry.type == 'integer' else ''}{entry.min:.9g} to {entry.max:.9g}"
     if entry.type == "bool":
         return "true, false"
-    later = [f"{choice} (not in this version)" for choice in entry.later_choices]
-    return ", ".join([*entry.choices, *later]) or "text"
+    return ", ".join(entry.choices) or "text"

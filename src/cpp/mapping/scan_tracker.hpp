@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <frsm/types.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "oort/geometry/pose2.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+/// What a matcher said before a finer one took over.
+struct CoarseMatch {
+  Pose2 T_local_sensor;
+  double hit_fraction = 0.0;
+};
+
+/// Where the scan matcher says the sensor is, in its own ("local") frame.
+struct TrackedScan {
+  Pose2 T_local_sensor;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the match alone, axes of the local frame
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the match and what was expected, same axes
+  double hit_fraction = 0.0;
+  double extent = 0.0;      ///< root mean square distance of the returns from their middle [m]
+  bool degenerate = false;  ///< the match leaves a direction open
+  bool usable = false;
+  bool restarted = false;  ///< a fresh local map begins with this scan: the old one did not fit any more
+  std::string status;
+  std::optional<CoarseMatch> first_stage;  ///< of a matcher of two stages
+};
+
+/// The status of a scan that a tracker on grids begins a local map with.
+constexpr const char* kNoLocalMap = "no_overlap";
+
+/// Follows the sensor from scan to scan by matching each against a local map of recent ones.
+class ScanTracker {
+ public:
+  virtual ~ScanTracker() = default;
+
+  /// Starts a fresh local map; its first scan will be at this pose of the local frame.
+  virtual void reset(const Pose2& T_local_sensor) = 0;
+
+  /// Takes the next scan: its returns in the sensor frame and the sensor's motion by odometry since the last one taken
+  /// (since reset(): the identity), with the covariance of that motion along the axes of the frame before.
+  virtual TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
+                            const Eigen::Matrix3d& covariance) = 0;
+
+  /// Overrules the matcher: the scan just tracked is at this pose of the local frame, and joins no local map.
+  virtual void set_pose(const Pose2& T_local_sensor) = 0;
+};
+
+/// The tracker that incremental_graph_builder.scanmatcher names.
+std::unique_ptr<ScanTracker> make_scan_tracker(const IncrementalGraphBuilderParameters& parameters);
+
+}  // namespace oort
