@@ -172,8 +172,8 @@ def test_settings(parameter: Callable[[str, Any], None]) -> None:
         ("linear_update", -1.0, "-1"),
         ("output_map", 3, "output_map"),
         ("params", "/nowhere/params.json", "/nowhere/params.json"),
-        ("load", 7, "~load must be a path, not 7"),
-        ("events_log", {"a": 1}, "~events_log must be a path"),
+        ("load", 7, "~load must be a text, such as a path, not 7"),
+        ("events_log", {"a": 1}, "~events_log must be a text, such as a path"),
     ],
 )
 def test_settings_that_cannot_be(parameter: Callable[[str, Any], None], name: str, value: Any, told: str) -> None:
