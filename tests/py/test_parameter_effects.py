@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from oort import Map, Parameters, Session, render_map
-from oort._core import Mapper, ParameterEntry
+from oort._core import Localizer, Mapper, ParameterEntry, ReferenceMap
 from oort.errors import ParameterError, StateError
 from oort.parameters import parameter_table
 from oort.recording import Scan, open_recording
@@ -26,6 +26,8 @@ RARE = {
     "incremental_graph_builder.frsm_matcher.stationary_motion_model",
     # tests/cpp/test_loop_closure.cpp has the case
     "loop_closure_graph_builder.frsm_matcher.match_filter.match_max_dist_high",
+    # tests/cpp/test_relocalizer.cpp has the case: no other place in this home looks like the right one
+    "localization.relocalizer.min_lead",
     # tests/cpp/test_grid_loop_matcher.cpp has the cases: what branch and bound finds here is near and fits well
     "loop_closure_graph_builder.branch_and_bound_matcher.match_filter.match_max_dist",
     "loop_closure_graph_builder.branch_and_bound_matcher.match_filter.match_max_dist_high",
@@ -74,8 +76,12 @@ USED = [
     if not entry.path.endswith((".num_threads", ".branch_and_bound_depth"))  # the result is the same
     and entry.status == "used"
     and entry.path not in OF_THE_NODE | RARE
+    and not entry.path.startswith("localization.")
     and (not entry.choices or len(entry.choices) > 1)
 ]
+
+
+LOCALIZING = [entry for entry in parameter_table() if entry.path.startswith("localization.") and entry.path not in RARE]
 
 
 @pytest.fixture(scope="module")
@@ -183,4 +189,48 @@ def test_parameter_has_an_effect(
                 changed = True
             if changed:
                 return
+    pytest.fail(f"{entry.path}: no other value made a difference")
+
+
+def localized(map_: Map, parameters: Parameters, scans: Sequence[Scan]) -> str:
+    """Digest of where a drive is told to be: its odometry is turned away in the middle, and some scans see nothing."""
+    localizer = Localizer(ReferenceMap(map_, parameters), parameters, (0.109, 0.0, 0.0))
+    told = []
+    for number, s in enumerate(scans):
+        ranges = s.ranges
+        if number % 97 in range(60, 90):  # long enough to be uncertain, and lost
+            ranges = np.full_like(ranges, np.inf)
+        x, y, theta = s.odometry
+        odometry = (x, y, theta) if number < len(scans) // 2 else (-y + 1.0, x, theta + np.pi / 2)
+        localizer.add_scan(s.time, s.angle_min, s.angle_increment, s.range_min, s.range_max, ranges, odometry)
+        told.append(f"{localizer.state} {localizer.T_map_sensor} {localizer.covariance.tolist()}")
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()
+
+
+@pytest.fixture(scope="module")
+def mapped(scans: list[Scan]) -> tuple[Map, str]:
+    """A map of the drive, and where the drive is told to be on it."""
+    session = Session(Parameters(), (0.109, 0.0, 0.0))
+    session.start()
+    for scan in scans:
+        session.add_scan(scan)
+    session.stop()
+    return session.map, localized(session.map, Parameters(), scans)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("entry", LOCALIZING, ids=lambda entry: entry.path)
+def test_localization_parameter_has_an_effect(
+    entry: ParameterEntry, scans: list[Scan], mapped: tuple[Map, str]
+) -> None:
+    map_, before = mapped
+    for value in others(entry):
+        parameters = Parameters()
+        try:
+            parameters.set(entry.path, value)
+            parameters.check()
+        except ParameterError:
+            continue
+        if localized(map_, parameters, scans) != before:
+            return
     pytest.fail(f"{entry.path}: no other value made a difference")
