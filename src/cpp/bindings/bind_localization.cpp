@@ -16,15 +16,7 @@ namespace py = pybind11;
 namespace oort {
 namespace {
 
-using PoseTuple = std::tuple<double, double, double>;
 using Ranges = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-Pose2 pose_of(const PoseTuple& t) {
-  return {std::get<0>(t), std::get<1>(t), std::get<2>(t)};
-}
-PoseTuple tuple_of(const Pose2& p) {
-  return {p.x, p.y, p.theta};
-}
 
 py::array_t<double> array_of(const Eigen::Matrix3d& matrix) {
   py::array_t<double> array({3, 3});

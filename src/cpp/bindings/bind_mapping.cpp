@@ -17,15 +17,6 @@ namespace py = pybind11;
 namespace oort {
 namespace {
 
-using PoseTuple = std::tuple<double, double, double>;
-
-Pose2 pose_of(const PoseTuple& t) {
-  return {std::get<0>(t), std::get<1>(t), std::get<2>(t)};
-}
-PoseTuple tuple_of(const Pose2& p) {
-  return {p.x, p.y, p.theta};
-}
-
 const char* name_of(ScanOutcome outcome) {
   switch (outcome) {
     case ScanOutcome::kNode:

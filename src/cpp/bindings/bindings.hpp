@@ -4,8 +4,21 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <tuple>
+
+#include "oort/geometry/pose2.hpp"
 
 namespace oort {
+
+/// A pose as Python has it: x, y, theta.
+using PoseTuple = std::tuple<double, double, double>;
+
+inline Pose2 pose_of(const PoseTuple& t) {
+  return {std::get<0>(t), std::get<1>(t), std::get<2>(t)};
+}
+inline PoseTuple tuple_of(const Pose2& p) {
+  return {p.x, p.y, p.theta};
+}
 
 /// A file's text need not be UTF-8; what is not becomes U+FFFD instead of an exception.
 pybind11::str to_str(const std::string& text);
