@@ -41,7 +41,13 @@ struct SwitchableEdge {
   std::uint64_t j = 0;
   Constraint constraint;
   double switch_value = 1.0;  ///< in [0, 1]; 1 is on; kept between solves
+
+  /// Whether it is believed (REQUIREMENTS 4.1).
+  bool is_on() const { return switch_value >= 0.5; }
 };
+
+/// A link whose chi^2 is at most this agrees with the poses: 95 % of a chi-square of three degrees of freedom.
+constexpr double kAgreement = 7.815;
 
 struct Graph {
   std::vector<Node> nodes;

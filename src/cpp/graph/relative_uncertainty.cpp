@@ -66,7 +66,7 @@ std::vector<std::optional<Eigen::Matrix3d>> RelativeUncertainty::from(const Grap
     known[a] = reached[a];
     for (const Link& link : links_[a]) {
       if (known[link.to]) continue;
-      if (link.switchable && graph.switchable_edges[link.edge].switch_value < 0.5) continue;
+      if (link.switchable && !graph.switchable_edges[link.edge].is_on()) continue;
       const std::uint64_t i = link.switchable ? graph.switchable_edges[link.edge].i : graph.edges[link.edge].i;
       const Constraint& constraint =
           link.switchable ? graph.switchable_edges[link.edge].constraint : graph.edges[link.edge].constraint;

@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "oort/graph/graph.hpp"
+
 namespace oort {
 namespace {
-
-// A link agrees with a solution if its squared error is at most this: 95 % of a chi-square of 3 degrees of freedom.
-constexpr double kAgreement = 7.815;
 
 // A link that was on and is now farther off than this (99.9 %) says that the solution may be another one altogether.
 constexpr double kSurprise = 16.266;

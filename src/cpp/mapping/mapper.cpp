@@ -9,7 +9,6 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/mapping/map_check.hpp"
-#include "oort/mapping/refinement.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/parameters/table.hpp"
 
@@ -19,23 +18,8 @@ namespace {
 // Variance of x, y and theta of a scan that nothing was matched with: FRSM's value for its first scan (FRSM.md 9).
 constexpr double kUnmatchedVariance = 0.1;
 
-// A closure this far from what the graph expects (99 % of a chi-square of 3 degrees of freedom) is solved at once.
-constexpr double kSurprise = 11.345;
-
-// Otherwise solving waits until the graph has grown by a twentieth, so that the work of all solves together stays in
-// proportion to the graph.
-constexpr std::uint64_t kMinSolveInterval = 10;
-constexpr std::uint64_t kSolveGrowth = 20;
-
 // So many nodes in a row that only odometry places, and the scan matcher starts afresh.
 constexpr int kMaxRefusals = 5;
-
-// In a larger graph, a surprise is first solved by moving so many of the newest nodes.
-constexpr std::uint64_t kNewestNodes = 1000;
-constexpr double kAgreement = 7.815;  // 95 % of a chi-square of 3 degrees of freedom
-
-constexpr int kIterationsWhileMapping = 15;
-constexpr int kFinalIterations = 100;
 
 // Farther off, float coordinates and the matcher's lattice lose their meaning; no robot gets there.
 constexpr double kMaxCoordinate = 1e5;  // [m]
@@ -145,15 +129,6 @@ void Mapper::begin_session(const Pose2& T_map_sensor) {
 
 void Mapper::resume_from_paused() {
   if (next_link_ == NextLink::kChain) next_link_ = NextLink::kPaused;
-}
-
-void Mapper::finish() {
-  {
-    const WorkClock clock(work_seconds_.matching);
-    add_closures(loops_.work_off(map_, chains_, statistics_.loops, closure_log_));
-  }
-  if (pending_closures_ > 0 || !map_.graph.switchable_edges.empty()) solve_anew(kFinalIterations);
-  if (parameters_.final_refinement) statistics_.refinement = refine(map_);
 }
 
 void Mapper::set_map(Map map) {
@@ -332,58 +307,6 @@ double Mapper::add_closure(const Closure& closure) {
   map_.loop_results.push_back({closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
   ++pending_closures_;
   return error.dot(closure.covariance.ldlt().solve(error));
-}
-
-void Mapper::solve_if_worthwhile(double surprise) {
-  if (pending_closures_ == 0) return;
-  const std::uint64_t nodes = map_.graph.nodes.size();
-  const std::uint64_t interval = std::max(kMinSolveInterval, nodes / kSolveGrowth);
-  if (nodes >= nodes_at_last_solve_ + interval) {
-    solve(kIterationsWhileMapping);
-  } else if (surprise > kSurprise) {
-    if (nodes <= kNewestNodes || !solve_newest()) solve(kIterationsWhileMapping);
-  } else {
-    return;
-  }
-  look_at_solution();
-}
-
-// Moves the newest nodes alone, which costs the same however large the map is. False if most of the new closures still
-// disagree: what they say is about the nodes before, too.
-bool Mapper::solve_newest() {
-  const std::uint64_t closures = pending_closures_;
-  const std::uint64_t solved_before = nodes_at_last_solve_;
-  std::vector<double> chi2 = solve(kIterationsWhileMapping, map_.graph.nodes.size() - kNewestNodes).chi_squared;
-  nodes_at_last_solve_ = solved_before;
-  const auto disagrees = [](double value) { return value > kAgreement; };
-  return 2 * std::count_if(chi2.end() - static_cast<std::ptrdiff_t>(closures), chi2.end(), disagrees) <=
-         static_cast<std::ptrdiff_t>(closures);
-}
-
-// Links that an earlier false closure had switched off stay off, as nothing pulls at a switch that is 0. So the whole
-// graph is solved once more with all of them on, and the better of the two solutions counts.
-void Mapper::solve_anew(int max_iterations) {
-  const double cost = solve(max_iterations).final_cost;
-  Graph kept = map_.graph;
-  for (SwitchableEdge& edge : map_.graph.switchable_edges) edge.switch_value = 1.0;
-  if (solve(max_iterations).final_cost >= cost) map_.graph = std::move(kept);
-  look_at_solution();
-}
-
-OptimizerSummary Mapper::solve(int max_iterations, std::uint64_t first_free_node) {
-  const WorkClock clock(work_seconds_.solving);
-  OptimizerOptions options;
-  options.switchable_constraint_scale = parameters_.switchable_constraint_scale;
-  options.robust_kernel = parameters_.robust_kernel == "huber" ? RobustKernel::kHuber : RobustKernel::kSwitchable;
-  options.huber_scale = parameters_.huber_scale;
-  options.max_iterations = max_iterations;
-  options.first_free_node = first_free_node;
-  const OptimizerSummary summary = optimize(map_.graph, options);
-  ++statistics_.solves;
-  if (!summary.converged) ++statistics_.solves_cut_short;
-  pending_closures_ = 0;
-  nodes_at_last_solve_ = map_.graph.nodes.size();
-  return summary;
 }
 
 ScanResult Mapper::result(const LastScan& scan, ScanOutcome outcome) const {

@@ -134,6 +134,7 @@ class Mapper {
   void close_loops();
   double add_closures(const std::vector<Closure>& closures);
   double add_closure(const Closure& closure);
+  static constexpr int kIterationsWhileMapping = 15;
   void solve_if_worthwhile(double surprise);
   void solve_anew(int max_iterations);
   bool solve_newest();

@@ -23,8 +23,6 @@ constexpr double kContradictedVarianceTheta = 0.06;  // [rad^2]
 constexpr double kPoorHits = 0.6;
 constexpr int kMaxPoor = 8;
 
-constexpr double kSwitchOn = 0.5;  // a closure with this or more is believed (REQUIREMENTS 4.1)
-
 }  // namespace
 
 // Wheels that slip, or a robot that is carried: its scans tell of a motion that odometry does not.
@@ -82,23 +80,6 @@ Mapper::ChainStep Mapper::begin_contradicted_chain(LastScan& scan, Node& node, c
   ++statistics_.contradictions;
   tracking_.hang_loosely(node.id, hits < kTellingHits);
   return ChainStep::kFresh;
-}
-
-// Closures are counted by what the latest solution says of them: kept, contradicted, or kept again.
-void Mapper::look_at_solution() {
-  const std::vector<SwitchableEdge>& closures = map_.graph.switchable_edges;
-  is_on_.resize(closures.size(), true);
-  statistics_.solved.kept = 0;
-  for (std::size_t k = 0; k < closures.size(); ++k) {
-    const bool on = closures[k].switch_value >= kSwitchOn;
-    if (on && !is_on_[k]) ++statistics_.solved.came_back;
-    if (on) ++statistics_.solved.kept;
-    is_on_[k] = on;
-  }
-  statistics_.solved.contradicted = closures.size() - statistics_.solved.kept;
-  if (!map_.graph.nodes.empty()) {
-    tracking_.look_for_tie(map_.graph, chains_.segment_begin(map_.graph.nodes.back().id));
-  }
 }
 
 void Mapper::count_tracking(TrackingState state) {

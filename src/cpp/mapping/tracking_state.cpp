@@ -7,8 +7,7 @@
 namespace oort {
 namespace {
 
-constexpr int kLostScans = 20;     // two seconds of a usual sensor
-constexpr double kSwitchOn = 0.5;  // a closure with this or more is believed
+constexpr int kLostScans = 20;  // two seconds of a usual sensor
 
 }  // namespace
 
@@ -21,8 +20,7 @@ void TrackingMonitor::hang_loosely(std::uint64_t first_node, bool is_guess) {
 void TrackingMonitor::look_for_tie(const Graph& graph, std::uint64_t chain_begin) {
   if (!is_loose_) return;
   const auto ties = [&](const SwitchableEdge& edge) {
-    return edge.switch_value >= kSwitchOn && std::max(edge.i, edge.j) >= chain_begin &&
-           std::min(edge.i, edge.j) < loose_begin_;
+    return edge.is_on() && std::max(edge.i, edge.j) >= chain_begin && std::min(edge.i, edge.j) < loose_begin_;
   };
   is_loose_ = std::none_of(graph.switchable_edges.begin(), graph.switchable_edges.end(), ties);
 }
