@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -8,8 +11,12 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
+#include "oort/geometry/errors.hpp"
 #include "oort/mapping/map.hpp"
+#include "oort/storage/codec.hpp"
+#include "oort/storage/map_file.hpp"
 
 /// What the tests of map files share: a made-up map, a folder of their own, and whole-file reading and writing.
 namespace oort::testing {
@@ -90,6 +97,36 @@ inline Map make_map(int node_count = 4, double variant = 0.0) {
     map.locations.push_back({"waypoints", "K\u00fcche", last, {1.0, 2.0, -0.5}});
   }
   return map;
+}
+
+/// A folder to save a map into.
+class StorageTest : public ::testing::Test {
+ protected:
+  /// The message of the MapFileError that loading ends with.
+  std::string load_error(const std::string& path, const LoadOptions& options = {}) const {
+    try {
+      load_map(path, options);
+    } catch (const MapFileError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> list;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) list.push_back(entry.path().filename().string());
+    std::sort(list.begin(), list.end());
+    return list;
+  }
+
+  TemporaryFolder folder_;
+  const std::string base_ = folder_ / "home";
+  const std::vector<std::string> whole_set_ = {"home.map_capnp", "home.map_meta_capnp", "home.md5"};
+};
+
+/// Whether two maps are the same in every bit.
+inline bool same(const Map& a, const Map& b) {
+  return encode_map(a) == encode_map(b) && encode_metadata(a.locations) == encode_metadata(b.locations);
 }
 
 }  // namespace oort::testing

@@ -23,39 +23,13 @@ namespace {
 
 using testing::make_map;
 using testing::read_file;
+using testing::same;
 using testing::write_file;
 namespace fs = std::filesystem;
 
+using Storage = testing::StorageTest;
+
 const std::vector<std::string> kSuffixes = {kMapSuffix, kMetadataSuffix, kChecksumSuffix};
-
-class Storage : public ::testing::Test {
- protected:
-  /// The message of the MapFileError that loading ends with.
-  std::string load_error(const std::string& path, const LoadOptions& options = {}) const {
-    try {
-      load_map(path, options);
-    } catch (const MapFileError& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
-  std::vector<std::string> names() const {
-    std::vector<std::string> list;
-    for (const auto& entry : fs::directory_iterator(folder_.path())) list.push_back(entry.path().filename().string());
-    std::sort(list.begin(), list.end());
-    return list;
-  }
-
-  testing::TemporaryFolder folder_;
-  const std::string base_ = folder_ / "home";
-  const std::vector<std::string> whole_set_ = {"home.map_capnp", "home.map_meta_capnp", "home.md5"};
-};
-
-/// Whether two maps are the same in every bit.
-bool same(const Map& a, const Map& b) {
-  return encode_map(a) == encode_map(b) && encode_metadata(a.locations) == encode_metadata(b.locations);
-}
 
 // ---- saving and loading ----
 
@@ -166,56 +140,6 @@ TEST_F(Storage, SavesTheWholeMapWhereMetadataAloneWouldNotFit) {
   saves_all(make_map(6));  // a location at a node that the file does not have
   write_file(base_ + ".map_capnp", "damaged");
   saves_all(make_map(6));
-}
-
-// ---- paths ----
-
-TEST_F(Storage, KnowsAPathInEachForm) {
-  for (const std::string form : {"home", "home.map_capnp", "home.map_meta_capnp", "home.capnp"}) {
-    EXPECT_EQ(normalise_map_path(folder_ / form), base_) << form;
-  }
-  save_map(folder_ / "home.capnp", make_map());
-  EXPECT_EQ(names(), whole_set_);
-  EXPECT_TRUE(same(load_map(folder_ / "home.capnp"), make_map()));
-}
-
-TEST_F(Storage, AMapNamedLikeTheManualsPathsIsFound) {
-  FileSet(folder_ / "home.capnp").write(encode_map(make_map()), encode_metadata({}));
-  EXPECT_EQ(load_map(folder_ / "home.capnp").graph.nodes.size(), 4U);
-  save_map(folder_ / "home.capnp", make_map(6));
-  EXPECT_EQ(load_map(folder_ / "home.capnp").graph.nodes.size(), 6U) << "what was saved is what is loaded";
-}
-
-TEST_F(Storage, ASingleFileIsLoadedOnRequest) {
-  write_file(folder_ / "home.capnp", encode_map(make_map()));
-  EXPECT_NE(load_error(folder_ / "home.capnp").find("ignore_checksum"), std::string::npos);
-  EXPECT_EQ(load_map(folder_ / "home.capnp", {true}).graph.nodes.size(), 4U);
-}
-
-TEST_F(Storage, FollowsLinks) {
-  fs::create_directory(folder_ / "maps");
-  const std::string real = folder_ / "maps/home";
-  save_map(real, make_map());
-  fs::create_symlink("maps/home.map_capnp", folder_ / "current.map_capnp");
-  fs::create_symlink("maps/home", folder_ / "last");
-  fs::create_directory_symlink("maps", folder_ / "folder");
-  fs::create_symlink("last", folder_ / "again");
-  for (const std::string link : {"current", "current.map_capnp", "last", "folder/home", "again.map_capnp"}) {
-    EXPECT_EQ(normalise_map_path(folder_ / link), real) << link;
-  }
-  save_map(folder_ / "current", make_map(6));
-  EXPECT_EQ(load_map(real).graph.nodes.size(), 6U);
-  EXPECT_TRUE(fs::is_symlink(folder_ / "current.map_capnp"));
-}
-
-TEST_F(Storage, LinksInACircleEnd) {
-  fs::create_symlink("b", folder_ / "a");
-  fs::create_symlink("a", folder_ / "b");
-  EXPECT_NE(load_error(folder_ / "a"), "no error");
-}
-
-TEST_F(Storage, RelativePathsBecomeAbsolute) {
-  EXPECT_EQ(normalise_map_path("home"), (fs::canonical(fs::current_path()) / "home").string());
 }
 
 // ---- interruptions ----

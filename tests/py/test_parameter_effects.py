@@ -157,22 +157,13 @@ def with_settings(settings: dict[str, str | float | bool]) -> Parameters:
     return parameters
 
 
-DEAD = {
-    "loop_closure_graph_builder.frsm_matcher.max_ambiguity": "the matcher is never asked for a second peak",
-}
-"""What has no effect, though it should."""
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("entry", USED, ids=lambda entry: entry.path)
 def test_parameter_has_an_effect(
     entry: ParameterEntry,
     scans: list[Scan],
     reference: list[tuple[dict[str, str | float | bool], str]],
-    request: pytest.FixtureRequest,
 ) -> None:
-    if entry.path in DEAD:
-        request.applymarker(pytest.mark.xfail(strict=True, reason=DEAD[entry.path]))
     for settings, before in reference:
         if settings not in settings_for(entry.path) or entry.path in settings:
             continue
