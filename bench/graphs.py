@@ -36,6 +36,7 @@ from false_closures import (
 )
 from oort import _core
 from oort.export.g2o import PoseGraph, read_g2o
+from oort.graph import position_rmse
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = Path(os.environ.get("OORT_DATASETS", ROOT / "../shared/datasets")) / "posegraphs"
@@ -55,15 +56,6 @@ class Outcome(NamedTuple):
     """False closures that the solution agrees with; -1: not known"""
     gain: float = 0.0
     """By how much it costs less than what the graph without false closures gives"""
-
-
-def position_rmse(poses: Floats, truth: Floats) -> float:
-    """Root mean square distance after the best rigid motion [m]."""
-    a = poses[:, :2] - poses[:, :2].mean(axis=0)
-    b = truth[:, :2] - truth[:, :2].mean(axis=0)
-    turn = np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
-    c, s = np.cos(turn), np.sin(turn)
-    return float(np.sqrt(np.mean(np.sum((a @ np.array([[c, s], [-s, c]]) - b) ** 2, axis=1))))
 
 
 def robust_cost(graph: PoseGraph, poses: Floats, scale: float) -> float:

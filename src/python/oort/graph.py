@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oort._core import OptimizerOptions, OptimizerSummary, optimize_graph
-from oort.errors import InputError, OortError
+from oort.errors import InputError
 from oort.evaluate import alignment
 from oort.export import PoseGraph, read_g2o, write_g2o
 from oort.export.files import floats, read_text
 from oort.poses import between, compose, wrap_angle
+from oort.tool import run_tool
 
 METHODS = {
     "decide": "closures have switches; those that disagree with the solution at 95 % are then left out",
@@ -197,30 +198,29 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _run(arguments: argparse.Namespace) -> None:
+    graph = read_g2o(arguments.graph)
+    truth = read_truth(arguments.truth, graph) if arguments.truth else None
+    solution = solve_graph(graph, arguments.method, arguments.scale)
+    kept = solution.believed
+    solved = solution.graph
+    write_g2o(
+        arguments.out,
+        replace(
+            solved,
+            edges=solved.edges[kept],
+            measurements=solved.measurements[kept],
+            covariances=solved.covariances[kept],
+        ),
+    )
+    figures = _figures(graph, solution, truth)
+    print(json.dumps(figures, indent=2) if arguments.json else _format(figures))
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     arguments = _parser().parse_args(argv)
-    try:
-        graph = read_g2o(arguments.graph)
-        truth = read_truth(arguments.truth, graph) if arguments.truth else None
-        solution = solve_graph(graph, arguments.method, arguments.scale)
-        kept = solution.believed
-        solved = solution.graph
-        write_g2o(
-            arguments.out,
-            replace(
-                solved,
-                edges=solved.edges[kept],
-                measurements=solved.measurements[kept],
-                covariances=solved.covariances[kept],
-            ),
-        )
-    except OortError as error:
-        print(f"oort graph: {error}", file=sys.stderr)
-        return 2
-    figures = _figures(graph, solution, truth)
-    print(json.dumps(figures, indent=2) if arguments.json else _format(figures))
-    return 0
+    return run_tool("oort graph", lambda: _run(arguments), arguments.graph)
 
 
 if __name__ == "__main__":

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from oort._core import Map, Parameters, load_map, render_map
-from oort.errors import OortError
 from oort.export import write_picture, write_tum
 from oort.export.files import write_atomically
 from oort.localization import STARTS, LocalizedDrive, follow, start_pose
 from oort.parameters import read_parameters
 from oort.recording import Pose, open_recording
 from oort.replay import scans_with_progress
+from oort.tool import run_tool
 
 
 def write_localization(
@@ -126,15 +126,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     args = parser.parse_args(argv)
     if (args.start == "pose") != (args.pose is not None):
         parser.error("--start pose and --pose go together")
-    try:
-        _run(args)
-    except OortError as error:
-        print(f"oort localize: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"oort localize: {error.filename or args.input}: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    return run_tool("oort localize", lambda: _run(args), args.input)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,8 @@ import sys
 from collections.abc import Sequence
 
 from oort._core import FORMAT_VERSION, load_map, normalise_map_path, read_map_format, save_map
-from oort.errors import InputError, OortError
+from oort.errors import InputError
+from oort.tool import run_tool
 
 
 def migrate(source: str, target: str, *, to_original: bool = False) -> str:
@@ -38,12 +39,11 @@ def _parser() -> argparse.ArgumentParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     arguments = _parser().parse_args(argv)
-    try:
-        print(migrate(arguments.source, arguments.target, to_original=arguments.original))
-    except OortError as error:
-        print(f"oort migrate: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return run_tool(
+        "oort migrate",
+        lambda: print(migrate(arguments.source, arguments.target, to_original=arguments.original)),
+        arguments.source,
+    )
 
 
 if __name__ == "__main__":

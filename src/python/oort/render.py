@@ -7,9 +7,10 @@ import sys
 from collections.abc import Sequence
 
 from oort._core import load_map, render_map
-from oort.errors import InputError, OortError
+from oort.errors import InputError
 from oort.export import write_map_server
 from oort.parameters import read_parameters
+from oort.tool import run_tool
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -24,21 +25,20 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _run(args: argparse.Namespace) -> None:
+    parameters = read_parameters(args.params)
+    for grid, name in zip(render_map(load_map(args.map), parameters), ("map", "map_cleaned"), strict=True):
+        if not grid.cells.size:
+            raise InputError(f"{args.map}: there is nothing to draw, for no scan of this map has a return")
+        base = f"{args.prefix}_{name}"
+        write_map_server(base, grid.cells, grid.resolution, (*grid.origin, 0.0), image_format="png")
+        print(f"{base}.png {base}.yaml")
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     args = _parser().parse_args(argv)
-    try:
-        parameters = read_parameters(args.params)
-        for grid, name in zip(render_map(load_map(args.map), parameters), ("map", "map_cleaned"), strict=True):
-            if not grid.cells.size:
-                raise InputError(f"{args.map}: there is nothing to draw, for no scan of this map has a return")
-            base = f"{args.prefix}_{name}"
-            write_map_server(base, grid.cells, grid.resolution, (*grid.origin, 0.0), image_format="png")
-            print(f"{base}.png {base}.yaml")
-    except OortError as error:
-        print(f"oort render: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return run_tool("oort render", lambda: _run(args), args.map)
 
 
 if __name__ == "__main__":

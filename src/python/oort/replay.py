@@ -23,6 +23,7 @@ from oort.report import Stopwatch, format_table
 from oort.results import Drive, write_results
 from oort.schedule import make_schedule
 from oort.session import Session
+from oort.tool import run_tool
 from oort.trajectory import TrajectoryRecorder
 
 
@@ -217,15 +218,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     args = parser.parse_args(argv)
     if args.resume is None and args.pose is not None:
         parser.error("--pose is where the robot starts on the map of --resume, which is missing")
-    try:
-        _run(args)
-    except OortError as error:
-        print(f"oort replay: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"oort replay: {error.filename or args.input}: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    return run_tool("oort replay", lambda: _run(args), args.input)
 
 
 if __name__ == "__main__":

@@ -7,11 +7,11 @@ import sys
 from collections.abc import Sequence
 
 from oort._core import Parameters
-from oort.errors import OortError
 from oort.parameters import read_parameters
 from oort.recording import Pose, open_recording
 from oort.replay import ReplayOptions, replay_to_folder
 from oort.session import Session
+from oort.tool import run_tool
 
 _DOCK = "dock"
 """The namespace of docks."""
@@ -43,25 +43,21 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _run(args: argparse.Namespace) -> None:
+    parameters = read_parameters(args.params)
+    recording = open_recording(args.bag, scan_topic=args.scan_topic)
+    resume = None
+    if args.resume_map:
+        pose, place = start_in(args.resume_map)
+        print(f"note: the drive is taken to begin at {place}", file=sys.stderr)
+        resume = (args.resume_map, pose)
+    replay_to_folder(recording, parameters, ReplayOptions(resume=resume))
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     args = _parser().parse_args(argv)
-    try:
-        parameters = read_parameters(args.params)
-        recording = open_recording(args.bag, scan_topic=args.scan_topic)
-        resume = None
-        if args.resume_map:
-            pose, place = start_in(args.resume_map)
-            print(f"note: the drive is taken to begin at {place}", file=sys.stderr)
-            resume = (args.resume_map, pose)
-        replay_to_folder(recording, parameters, ReplayOptions(resume=resume))
-    except OortError as error:
-        print(f"oort_bag: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"oort_bag: {error.filename or args.bag}: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    return run_tool("oort_bag", lambda: _run(args), args.bag)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 """``rosrun oort oort_localizer``: tells where the robot is on a saved map while nothing is being mapped."""
 
 import json
-import signal
 import sys
 import threading
 import time
@@ -31,13 +30,13 @@ from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 from oort._core import Map, Parameters, load_map, normalise_map_path, render_map
 from oort.errors import InputError, OortError, StateError
 from oort.export.files import write_atomically
-from oort.live import UnusableScanError
-from oort.live.inbox import CallItem, Inbox, Resolve, ScanItem
+from oort.live.inbox import CallItem, Inbox, ScanItem
 from oort.localization import Localizer, ReferenceMap, start_covariance, start_pose
 from oort.poses import between, compose
 from oort.recording import Pose, Scan
-from oort.recording.laser_scan import seconds
-from oort.ros.messages import grid_message, rotation, to_scan, transform, yaw
+from oort.ros.laser import Laser
+from oort.ros.messages import grid_message, rotation, transform, yaw
+from oort.ros.running import run_node
 from oort.ros.settings import read_private
 from oort.ros.transforms import Transforms, frame
 
@@ -59,7 +58,7 @@ class LocalizerNode:
         """Loads the map, advertises and subscribes. Raises OortError if the map or the start cannot be used."""
         self._parameters = parameters
         self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
-        self._laser = ""
+        self._sensor_frame = frame(parameters, "sensor")
         self._last_tf = rospy.Time()
         self._tf_lock = threading.Lock()
         self._closing = False
@@ -76,6 +75,7 @@ class LocalizerNode:
         self._broadcaster = tf2_ros.TransformBroadcaster()
         self._inbox = Inbox()
         self._transforms = Transforms(parameters, self._inbox.poke)
+        self._laser = Laser(self._transforms, self._laser_found)
         self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
         self._begin(start)
         self._show_map()
@@ -147,25 +147,11 @@ class LocalizerNode:
     # ---- what comes in ----
 
     def _on_scan(self, message: LaserScan) -> None:
-        self._inbox.add_scan(self._resolve(message, time.monotonic()))
+        sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
+        self._inbox.add_scan(self._laser.resolve_later(message, sensor_frame, time.monotonic()))
 
-    def _resolve(self, message: LaserScan, arrived: float) -> Resolve:
-        sensor_frame = message.header.frame_id.lstrip("/") or frame(self._parameters, "sensor")
-        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
-
-        def resolve() -> Scan | None:
-            if not message.ranges:
-                raise UnusableScanError("without readings")
-            if self._laser and sensor_frame != self._laser:
-                raise UnusableScanError("in another laser's frame")
-            mount = self._transforms.mount(sensor_frame)
-            odometry = None if mount is None else self._transforms.odometry(stamp, arrived)
-            if mount is None or odometry is None:
-                return None
-            self._laser, self._mount = sensor_frame, mount.sensor_on_base
-            return to_scan(message, odometry, mount.upside_down)
-
-        return resolve
+    def _laser_found(self, frame: str, mount: Pose) -> None:
+        self._mount = mount
 
     def _on_initial_pose(self, message: PoseWithCovarianceStamped) -> None:
         """T_map_base from a person: RViz's "2D Pose Estimate"."""
@@ -300,30 +286,19 @@ def _of_base(covariance: NDArray[np.float64], theta: float, mount: Pose) -> NDAr
     return np.asarray(jacobian @ covariance @ jacobian.T)
 
 
+def _begin() -> LocalizerNode:
+    parameters, own = read_private(["map", "start"])
+    start = own["start"] or "auto"
+    if not own["map"] or start not in _STARTS:
+        raise InputError(f"~map must be the path of a saved map, and ~start one of {', '.join(_STARTS)}")
+    node = LocalizerNode(parameters, own["map"], start)
+    rospy.loginfo("%s is ready", rospy.get_name())
+    return node
+
+
 def main() -> int:
     """Runs the node until it is told to end; exit code 2 if it cannot begin."""
-    rospy.init_node("oort_localizer", disable_signals=True)
-    told_to_end = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: told_to_end.set())
-    try:
-        parameters, own = read_private(["map", "start"])
-        start = own["start"] or "auto"
-        if not own["map"] or start not in _STARTS:
-            raise InputError(f"~map must be the path of a saved map, and ~start one of {', '.join(_STARTS)}")
-        node = LocalizerNode(parameters, own["map"], start)
-        try:
-            rospy.loginfo("%s is ready", rospy.get_name())
-            while not told_to_end.wait(0.1) and not rospy.is_shutdown():
-                pass
-        finally:
-            node.close()
-    except OortError as error:
-        rospy.logfatal("%s", error)
-        return 2
-    finally:
-        rospy.signal_shutdown("the node ends")
-    return 0
+    return run_node("oort_localizer", _begin)
 
 
 if __name__ == "__main__":

@@ -17,15 +17,15 @@ from visualization_msgs.msg import MarkerArray
 
 from oort._core import Parameters, Saved
 from oort.events import EventLog
-from oort.live import Drawing, Listener, LiveSession, Snapshot, UnusableScanError
+from oort.live import Drawing, Listener, LiveSession, Snapshot
 from oort.live.inbox import Resolve
 from oort.live.saver import NAMES
-from oort.recording import Pose, Scan
-from oort.recording.laser_scan import seconds
+from oort.recording import Pose
 from oort.ros.diagnostics import diagnostic_array
 from oort.ros.health import look_over
+from oort.ros.laser import Laser
 from oort.ros.markers import graph_markers
-from oort.ros.messages import grid_message, to_scan, transform
+from oort.ros.messages import grid_message, transform
 from oort.ros.services import Services
 from oort.ros.transforms import Transforms, frame
 
@@ -42,7 +42,6 @@ class Node(Listener):
         """Advertises, subscribes, and offers the services; mapping begins with map/start."""
         self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
         self._sensor_frame = frame(parameters, "sensor")
-        self._laser = ""  # the frame of the laser whose scans are mapped, once it is known
         self._last_tf = rospy.Time()
         self._tf_lock = threading.Lock()
 
@@ -54,6 +53,7 @@ class Node(Listener):
         self._broadcaster = tf2_ros.TransformBroadcaster()
 
         self._transforms = Transforms(parameters, self._poke)
+        self._laser = Laser(self._transforms, self._laser_found)
         self.live = LiveSession(
             parameters, self, clock=rospy.get_time, localiser=self._sensor_on_map, event_log=event_log
         )
@@ -80,7 +80,7 @@ class Node(Listener):
 
     def _resolve(self, message: LaserScan, arrived: float) -> Resolve:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
-        if sensor_frame != self._sensor_frame and not self._laser:
+        if sensor_frame != self._sensor_frame and not self._laser.frame:
             rospy.logwarn_once(
                 "the scans are in frame %s, not in the sensor_frame %s of the parameters; using %s",
                 sensor_frame,
@@ -88,23 +88,11 @@ class Node(Listener):
                 sensor_frame,
             )
             self._sensor_frame = sensor_frame
-        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+        return self._laser.resolve_later(message, sensor_frame, arrived)
 
-        def resolve() -> Scan | None:
-            if not message.ranges:
-                raise UnusableScanError("without readings")
-            if self._laser and sensor_frame != self._laser:
-                raise UnusableScanError("in another laser's frame")
-            mount = self._transforms.mount(sensor_frame)
-            odometry = None if mount is None else self._transforms.odometry(stamp, arrived)
-            if mount is None or odometry is None:
-                return None
-            if not self._laser:
-                self.live.mount_sensor(mount.sensor_on_base)
-                self._laser = self._sensor_frame = sensor_frame
-            return to_scan(message, odometry, mount.upside_down)
-
-        return resolve
+    def _laser_found(self, sensor_frame: str, mount: Pose) -> None:
+        self.live.mount_sensor(mount)
+        self._sensor_frame = sensor_frame
 
     def _poke(self) -> None:
         self.live.inbox.poke()
