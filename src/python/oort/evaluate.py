@@ -76,22 +76,14 @@ def evaluate_relations(
     relations themselves (division by n). Raises InputError if the file is damaged, more than 5 % of the relations
     are not in the trajectory, or none is left.
     """
-    relations = _read_relations(Path(path))
-    if max_seconds is not None:
-        relations = relations[np.abs(relations[:, 1] - relations[:, 0]) < max_seconds]
-    if not len(relations):
-        raise InputError(f"{path} holds no relation{'' if max_seconds is None else f' under {max_seconds} s'}")
-    index = _index(trajectory)
-    pairs = [(index.get(round(t1, 6)), index.get(round(t2, 6))) for t1, t2 in relations[:, :2].tolist()]
-    found = np.array([i is not None and j is not None for i, j in pairs])
-    _check_missing(int(np.count_nonzero(~found)), len(found), f"relations of {path}")
-    ends = np.array([pair for pair, both in zip(pairs, found, strict=True) if both], dtype=np.int64)
-    estimated = between(trajectory.poses[ends[:, 0]], trajectory.poses[ends[:, 1]])
-    errors = between(relations[found][:, [2, 3, 7]], estimated)
+    errors = relation_errors(trajectory, path, max_seconds=max_seconds)
+    found = np.isfinite(errors[:, 0])
+    missing = int(np.count_nonzero(~found))
+    errors = errors[found]
     translation, rotation = np.hypot(errors[:, 0], errors[:, 1]), np.degrees(np.abs(errors[:, 2]))
     return RelationsResult(
-        n=len(ends),
-        missing=int(np.count_nonzero(~found)),
+        n=len(errors),
+        missing=missing,
         translation_mean=float(translation.mean()),
         translation_std=float(translation.std()),
         translation_max=float(translation.max()),
@@ -103,6 +95,28 @@ def evaluate_relations(
         squared_rotation_mean=float((rotation**2).mean()),
         squared_rotation_std=float((rotation**2).std()),
     )
+
+
+def relation_errors(
+    trajectory: Trajectory, path: str | os.PathLike[str], *, max_seconds: float | None = None
+) -> NDArray[np.float64]:
+    """The motion from the true to the estimated pose, (n, 3) in m and rad, of each relation of the file in its order.
+
+    Rows are NaN where a time is not in the trajectory. The file and what is raised are those of evaluate_relations.
+    """
+    relations = _read_relations(Path(path))
+    if max_seconds is not None:
+        relations = relations[np.abs(relations[:, 1] - relations[:, 0]) < max_seconds]
+    if not len(relations):
+        raise InputError(f"{path} holds no relation{'' if max_seconds is None else f' under {max_seconds} s'}")
+    index = _index(trajectory)
+    ends = np.array([[index.get(round(t, 6), -1) for t in pair] for pair in relations[:, :2].tolist()], dtype=np.int64)
+    found: NDArray[np.bool_] = np.all(ends >= 0, axis=1)
+    _check_missing(int(np.count_nonzero(~found)), len(found), f"relations of {path}")
+    errors = np.full((len(relations), 3), np.nan)
+    estimated = between(trajectory.poses[ends[found, 0]], trajectory.poses[ends[found, 1]])
+    errors[found] = between(relations[found][:, [2, 3, 7]], estimated)
+    return errors
 
 
 def _read_relations(path: Path) -> NDArray[np.float64]:
