@@ -44,6 +44,16 @@ DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query
   return nearest;
 }
 
+void make_dock_closures_firm(Map& map, double firmness) {
+  for (SwitchableEdge& edge : map.graph.switchable_edges) {
+    if (edge.i > edge.j) continue;
+    const auto matched_it = [&edge](const LoopResult& result) {
+      return result.id == edge.i && result.target == edge.j && result.hit_fraction > 0.0;
+    };
+    if (std::any_of(map.loop_results.begin(), map.loop_results.end(), matched_it)) edge.firmness = firmness;
+  }
+}
+
 DockGraphBuilder::DockGraphBuilder(const Parameters& parameters)
     : parameters_(parameters.dock_graph_builder),
       table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
@@ -59,7 +69,14 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
   if (dock.node == query) {
     reason = "same_node";
   } else {
-    closure = match(map, chains, query, dock, reason);
+    const auto least = static_cast<std::uint64_t>(parameters_.dock_match_least_size);
+    auto size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
+    closure = match(map, chains, query, dock, size, reason);
+    while (!closure && size / 2 >= least) {
+      size /= 2;
+      std::string later;  // what the documented number of nodes says is what counts
+      closure = match(map, chains, query, dock, size, later);
+    }
   }
   if (closure) {
     ++counts.accepted;
@@ -70,8 +87,8 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
 }
 
 std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
-                                               const DockPlace& dock, std::string& reason) const {
-  const std::uint64_t query_size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
+                                               const DockPlace& dock, std::uint64_t query_size,
+                                               std::string& reason) const {
   const std::uint64_t first =
       std::max(chains.segment_begin(query), query + 1 - std::min<std::uint64_t>(query_size, query + 1));
   std::vector<std::uint64_t> query_nodes;
@@ -106,7 +123,7 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
     reason = "distance";
   } else {
-    return Closure{dock.node, query, T_dock_query, match.covariance, match.hit_fraction};
+    return Closure{dock.node, query, T_dock_query, match.covariance, match.hit_fraction, parameters_.closure_firmness};
   }
   return std::nullopt;
 }
