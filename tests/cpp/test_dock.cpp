@@ -204,8 +204,8 @@ TEST_F(DockTest, WhereNothingIsSeenTheContactsCount) {
   ASSERT_TRUE(closure);
   EXPECT_EQ(closure->T_from_to.x, 0.0);
   EXPECT_EQ(closure->hit_fraction, 0.0);
-  const double reach = p.dock_contacts_size + p.dock_max_translation;
-  EXPECT_NEAR(closure->covariance(0, 0), reach * reach, 1e-12);
+  const double deviation = 0.5 * (p.dock_contacts_size + p.dock_max_translation);
+  EXPECT_NEAR(closure->covariance(0, 0), deviation * deviation, 1e-12);
   EXPECT_EQ(counts.accepted, 1u);
 }
 

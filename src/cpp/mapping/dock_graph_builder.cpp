@@ -11,6 +11,9 @@
 namespace oort {
 namespace {
 
+// What is known without a look: the reach of the contacts and the dock's moves are limits, not deviations.
+constexpr double kSigmasOfReach = 2.0;
+
 // How far the chain is bent over the nodes that are matched, as standard deviations: matched closures in homes seen
 // with 60 degrees are off by up to 7 cm and 4 degrees where every point fits.
 constexpr double kBend = 0.03;       // [m]
@@ -116,10 +119,8 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
 
   // The robot touches the contacts somewhere along their size, and the dock may have been moved.
   const double reach = std::max(parameters_.dock_contacts_size + parameters_.dock_max_translation, table_.cell);
-  const frsm::Prior prior{
-      to_frsm(dock.T_node_dock),
-      Eigen::Vector3d(reach * reach, reach * reach, parameters_.search_window_theta * parameters_.search_window_theta)
-          .asDiagonal()};
+  const Eigen::Vector3d limits(reach, reach, parameters_.search_window_theta);
+  const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / kSigmasOfReach).cwiseAbs2().asDiagonal()};
   const auto submap = draw_submap(map, reference, table_, contours_);
   const frsm::Match match = matcher_.match(*submap, points_of(map, query_nodes), prior.mean,
                                            {reach, reach, parameters_.search_window_theta}, &prior);

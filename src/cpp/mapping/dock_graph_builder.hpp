@@ -34,7 +34,7 @@ class DockGraphBuilder {
 
   /// The closure from the dock's node to `query`, a node recorded on the dock: the latest nodes matched together, or,
   /// if that is refused, fewer and fewer of them. Where too little is seen to match, it is the dock's own place with
-  /// the reach of its contacts as deviation. Counts the attempt.
+  /// the reach of its contacts as two deviations. Counts the attempt.
   std::optional<Closure> find(const Map& map, const Chains& chains, std::uint64_t query, ClosureCounts& counts) const;
 
  private:
