@@ -50,6 +50,11 @@ TEST_F(GenuineDockTest, WithoutADockLocationTheFirstNodeOfTheChainCounts) {
   EXPECT_TRUE(DockGraphBuilder(Parameters()).find(map, chains, 8, counts));
 }
 
+TEST_F(GenuineDockTest, TheOriginalsDockClosureIsKnownAsOne) {
+  make_dock_closures_firm(map, 50.0);
+  EXPECT_EQ(map.graph.switchable_edges.at(0).firmness, 50.0);
+}
+
 TEST(NearestDock, IsADockLocationSeenFromItsNode) {
   Map map;
   Chains chains;
@@ -140,6 +145,50 @@ TEST_F(DockTest, DistanceIsFromTheDockNotFromItsNode) {
   EXPECT_NEAR(error.translation().norm(), 0.0, 0.01);
 }
 
+TEST_F(DockTest, WhereTheLastNodesAreBentFewerAreMatched) {
+  chains = {};  // the same places again, but the robot took its last turn but one for a much wider one
+  for (std::uint64_t k = 0; k < map.graph.nodes.size(); ++k) {
+    const Pose2 T_bent = k < query - 2 ? Pose2{0.3, -0.2, 0.5} : Pose2{};
+    const Pose2 place = k == query ? dock() * kDocked : map.graph.nodes[k].pose;
+    chains.add(k == 0 || k == 12, true, k < 12 ? place : T_bent * place);
+  }
+  p.dock_match_least_size = p.dock_match_submap_size;
+  EXPECT_EQ(verdict(), "hits");
+  p.dock_match_least_size = 1;
+  const std::optional<Closure> closure = find();
+  ASSERT_TRUE(closure);
+  EXPECT_EQ(counts.tried, 1u);
+  EXPECT_TRUE(counts.refused.empty());
+  EXPECT_NEAR(closure->T_from_to.x, kDocked.x, 0.01);
+  EXPECT_NEAR(closure->T_from_to.y, kDocked.y, 0.01);
+  EXPECT_NEAR(closure->T_from_to.theta, kDocked.theta, 0.01);
+}
+
+TEST_F(DockTest, OnlyWhatWasMatchedIsFirm) {
+  const Eigen::Matrix3d documented = find().value().covariance;
+  EXPECT_EQ(find()->firmness, 1.0);
+  p.closure_firmness = 70.0;
+  EXPECT_EQ(find()->firmness, 70.0);
+  EXPECT_GT((find()->covariance - documented).determinant(), 0.0);
+  map.clouds[query].points.resize(3);
+  p.dock_match_submap_size = 1;
+  EXPECT_EQ(find()->firmness, 1.0);
+}
+
+TEST_F(DockTest, ALoadedMapsDockClosuresAreKnownByTheirDirection) {
+  const auto add = [this](std::uint64_t i, std::uint64_t j, double hits) {
+    map.graph.switchable_edges.push_back({map.graph.switchable_edges.size(), i, j, {}});
+    map.loop_results.push_back({i, j, {}, Eigen::Matrix3d::Identity(), hits});
+  };
+  add(0, query, 0.9);
+  add(query, 0, 0.9);      // a loop
+  add(0, query - 1, 0.0);  // the reach of the contacts
+  make_dock_closures_firm(map, 50.0);
+  EXPECT_EQ(map.graph.switchable_edges[0].firmness, 50.0);
+  EXPECT_EQ(map.graph.switchable_edges[1].firmness, 1.0);
+  EXPECT_EQ(map.graph.switchable_edges[2].firmness, 1.0);
+}
+
 TEST_F(DockTest, SomewhereElseIsNotTheDock) {
   map.clouds[query].points.clear();
   const Pose2 elsewhere = dock() * Pose2{1.5, 0.8, 1.5};
@@ -155,8 +204,8 @@ TEST_F(DockTest, WhereNothingIsSeenTheContactsCount) {
   ASSERT_TRUE(closure);
   EXPECT_EQ(closure->T_from_to.x, 0.0);
   EXPECT_EQ(closure->hit_fraction, 0.0);
-  const double reach = p.dock_contacts_size + p.dock_max_translation;
-  EXPECT_NEAR(closure->covariance(0, 0), reach * reach, 1e-12);
+  const double deviation = 0.5 * (p.dock_contacts_size + p.dock_max_translation);
+  EXPECT_NEAR(closure->covariance(0, 0), deviation * deviation, 1e-12);
   EXPECT_EQ(counts.accepted, 1u);
 }
 

@@ -41,6 +41,9 @@ struct SwitchableEdge {
   std::uint64_t j = 0;
   Constraint constraint;
   double switch_value = 1.0;  ///< in [0, 1]; 1 is on; kept between solves
+  /// How many times as much as for other links it costs to switch it off. Not in map files: who knows what the link is
+  /// sets it.
+  double firmness = 1.0;
 
   /// Whether it is believed (REQUIREMENTS 4.1).
   bool is_on() const { return switch_value >= 0.5; }

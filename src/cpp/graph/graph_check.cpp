@@ -3,6 +3,7 @@
 #include "oort/graph/graph_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -44,6 +45,10 @@ void check_graph(const Graph& graph) {
     if (!(edge.switch_value >= 0.0 && edge.switch_value <= 1.0)) {
       throw InputError("the switch of " + describe(edge) + " is " + std::to_string(edge.switch_value) +
                        ", outside 0 to 1");
+    }
+    if (!(edge.firmness >= 1.0 && std::isfinite(edge.firmness))) {
+      throw InputError("the firmness of " + describe(edge) + " is " + std::to_string(edge.firmness) +
+                       ", not finite and at least 1");
     }
   }
 }

@@ -87,7 +87,7 @@ double GraphSolver::cost(const std::vector<Pose2>& poses, const std::vector<doub
     const double chi2 = squared_error(link, poses);
     if (link.switchable) {
       const double s = switches[a];
-      sum += s * s * chi2 + scale_ * (1.0 - s) * (1.0 - s);
+      sum += s * s * chi2 + scale_of(link) * (1.0 - s) * (1.0 - s);
     } else {
       sum += chi2;
     }
@@ -116,8 +116,8 @@ void GraphSolver::add_link(std::size_t place) {
   const Eigen::RowVector3d rA_j = r.transpose() * A_j;
   double pull = 1.0;
   if (link.switchable) {
-    const double s = link.s, chi2 = r.squaredNorm(), h = chi2 + scale_;
-    const double g = s * chi2 - scale_ * (1.0 - s);
+    const double s = link.s, chi2 = r.squaredNorm(), h = chi2 + scale_of(link);
+    const double g = s * chi2 - scale_of(link) * (1.0 - s);
     H_ii = s * s * (H_ii - rA_i.transpose() * (rA_i / h));
     H_ij = s * s * (H_ij - rA_i.transpose() * (rA_j / h));
     H_jj = s * s * (H_jj - rA_j.transpose() * (rA_j / h));

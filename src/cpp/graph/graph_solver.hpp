@@ -19,19 +19,21 @@ struct Link {
   Pose2 T_i_j;
   Eigen::Matrix3d W;  ///< whitening matrix (residuals.hpp)
   bool switchable = false;
-  double s = 1.0;  ///< switch
-  bool on = true;  ///< whether it takes part in solving
+  double firmness = 1.0;  ///< times `scale` is what it costs to switch it off
+  double s = 1.0;         ///< switch
+  bool on = true;         ///< whether it takes part in solving
 };
 
 /// Finds the poses, and the switches, at which the links that take part cost least:
 ///
 ///   1/2 sum over links that are always believed of |W e|^2
-///   + 1/2 sum over switchable links of s^2 |W e|^2 + scale (1 - s)^2
+///   + 1/2 sum over switchable links of s^2 |W e|^2 + scale (1 - s)^2,
 ///
-/// (Suenderhauf and Protzel 2012, "Switchable Constraints for Robust Pose Graph SLAM", with Psi(s) = s, gamma = 1 and
-/// the variance 1 / scale.) By Gauss-Newton steps with the damping of Levenberg and Marquardt. Each switch appears in
-/// one link only, so it is eliminated before the poses are solved for (the Schur complement): with r = W e, A = W
-/// de/dposes, chi2 = |r|^2, h = chi2 + scale and g = s chi2 - scale (1 - s),
+/// where scale is as many times larger as a link is firm (Suenderhauf and Protzel 2012, "Switchable Constraints for
+/// Robust Pose Graph SLAM", with Psi(s) = s, gamma = 1 and the variance 1 / scale.) By Gauss-Newton steps with the
+/// damping of Levenberg and Marquardt. Each switch appears in one link only, so it is eliminated before the poses are
+/// solved for (the Schur complement): with r = W e, A = W de/dposes, chi2 = |r|^2, h = chi2 + scale and g = s chi2 -
+/// scale (1 - s),
 ///
 ///   the link adds  s^2 A^T (I - r r^T / h) A  to the matrix and  -(s^2 - s g / h) A^T r  to the right-hand side;
 ///   its switch then moves by  ds = -(g + s r^T A dposes) / h.
@@ -51,9 +53,14 @@ class GraphSolver {
   /// |W e|^2 at the present poses.
   double squared_error(const Link& link) const { return squared_error(link, poses_); }
   /// The switch at which a link costs least with the poses held: scale / (scale + chi2).
-  double best_switch(double chi2) const { return scale_ / (scale_ + chi2); }
+  double best_switch(const Link& link, double chi2) const { return scale_of(link) / (scale_of(link) + chi2); }
+
+  /// The chi2 at which a switch (above 0) is the best.
+  double squared_error_at(const Link& link, double s) const { return scale_of(link) * (1.0 - s) / s; }
 
   void set_poses(std::vector<Pose2> poses) { poses_ = std::move(poses); }
+  /// Whether the link is one that may be switched off, for the steps to come.
+  void set_switchable(std::size_t link, bool switchable) { links_[link].switchable = switchable; }
   /// Where a switch starts.
   void set_switch(std::size_t link, double s) { links_[link].s = s; }
 
@@ -76,6 +83,7 @@ class GraphSolver {
     Eigen::RowVector3d rA_i, rA_j;
   };
 
+  double scale_of(const Link& link) const { return scale_ * link.firmness; }
   double squared_error(const Link& link, const std::vector<Pose2>& poses) const;
   double cost(const std::vector<Pose2>& poses, const std::vector<double>& switches) const;
   void linearize();

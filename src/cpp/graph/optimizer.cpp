@@ -49,6 +49,7 @@ std::vector<Link> links_of(const Graph& graph, Whitening whitening) {
   for (const SwitchableEdge& edge : graph.switchable_edges) {
     links.push_back(link_of(edge, graph.nodes, whitening));
     links.back().switchable = true;
+    links.back().firmness = edge.firmness;
     links.back().s = edge.switch_value;
   }
   return links;
@@ -117,8 +118,9 @@ OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
   summary.message = describe(search.progress());
   write_back(solver, graph);
   for (std::size_t k = 0; k < graph.switchable_edges.size(); ++k) {
-    const double chi2 = solver.squared_error(solver.links()[graph.edges.size() + k]);
-    graph.switchable_edges[k].switch_value = solver.best_switch(chi2);
+    const Link& link = solver.links()[graph.edges.size() + k];
+    const double chi2 = solver.squared_error(link);
+    graph.switchable_edges[k].switch_value = solver.best_switch(link, chi2);
     summary.chi_squared.push_back(chi2);
   }
   return summary;

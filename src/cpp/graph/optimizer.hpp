@@ -43,8 +43,8 @@ struct OptimizerSummary {
   bool converged = false;
   int iterations = 0;
   /// Half the sum of chi^2 over the edges and of scale chi^2 / (scale + chi^2) over the switchable edges, where chi^2
-  /// is an edge's squared Mahalanobis distance; before and after. With kHuber a switchable edge adds half of chi^2 up
-  /// to huber_scale^2, and of 2 huber_scale chi - huber_scale^2 beyond.
+  /// is an edge's squared Mahalanobis distance and scale counts as often as the edge is firm; before and after. With
+  /// kHuber a switchable edge adds half of chi^2 up to huber_scale^2, and of 2 huber_scale chi - huber_scale^2 beyond.
   double initial_cost = 0.0;
   double final_cost = 0.0;
   /// chi^2 of each switchable edge at the final poses.
@@ -53,8 +53,9 @@ struct OptimizerSummary {
 };
 
 /// Moves the nodes to the optimum of all links, however many of the switchable ones are false, and sets the switches:
-/// scale / (scale + chi^2), the least costly with the final poses. With kHuber switches only tell what became of a
-/// link: s^2 is the share of its weight that is left, min(1, huber_scale / chi); nothing is decided.
+/// scale / (scale + chi^2), the least costly with the final poses; scale is as many times larger as a link is firm.
+/// With kHuber switches only tell what became of a link: s^2 is the share of its weight that is left, min(1,
+/// huber_scale / chi); nothing is decided.
 ///
 /// Starts from the graph's own poses and switch values (docs/optimiser.md). The first node of the graph, and the first
 /// of every part that no edge links to it, keeps its pose. Deterministic: one thread; the same graph gives the same

@@ -50,6 +50,15 @@ double believed_cost(const GraphSolver& solver) {
   return 0.5 * sum;
 }
 
+/// The squared error of a link against what it takes to doubt it.
+double strain(const GraphSolver& solver, const Link& link) {
+  return solver.squared_error(link) / link.firmness;
+}
+
+bool is_firm(const Link& link) {
+  return link.firmness > 1.0;
+}
+
 /// The poses that follow from the links that are always believed alone: each node where the most certain of its links
 /// to earlier nodes has it.
 std::vector<Pose2> chained_poses(const GraphSolver& solver) {
@@ -74,7 +83,7 @@ double robust_cost(const GraphSolver& solver) {
   double sum = 0.0;
   for (const Link& link : solver.links()) {
     const double chi2 = solver.squared_error(link);
-    sum += link.switchable ? chi2 * solver.best_switch(chi2) : chi2;
+    sum += link.switchable ? chi2 * solver.best_switch(link, chi2) : chi2;
   }
   return 0.5 * sum;
 }
@@ -90,27 +99,36 @@ void Search::run(bool decides) {
   decide();
 }
 
-/// Whether a link that was on is far off at the poses as they are.
+/// Whether a link that was on is far off at the poses as they are; for a firm one, farther than it already was.
 bool Search::is_surprised() const {
-  const double agreeing_switch = solver_.best_switch(kAgreement);
   return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
-    return link.switchable && link.s > agreeing_switch && solver_.squared_error(link) > kSurprise;
+    if (!link.switchable || link.s <= agreeing_switch(link)) return false;
+    const double known = is_firm(link) ? solver_.squared_error_at(link, link.s) : 0.0;
+    return solver_.squared_error(link) > kSurprise + known;
   });
+}
+
+/// The switch of a link that just agrees.
+double Search::agreeing_switch(const Link& link) const {
+  return solver_.best_switch(link, kAgreement * link.firmness);
 }
 
 void Search::switch_all_on() {
   for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
 }
 
-/// From the poses as they are, and from those of the chain alone, which false links have not bent yet; then once
-/// more from the better ones, without the links that are off there, so that those in doubt get a second chance.
+/// From the poses as they are, and from those of the chain alone, which false links have not bent yet; from the better
+/// ones with firm links believed; then once more, without the links that are off there, so that those in doubt get a
+/// second chance.
 void Search::find_best_start() {
   std::vector<Pose2> best = solver_.poses();
   double least = robust_cost(solver_);
-  const auto try_from = [&](std::vector<Pose2> start, double least_switch) {
+  const auto try_from = [&](std::vector<Pose2> start, double least_switch, bool believes_firm = false) {
     solver_.set_poses(std::move(start));
     switch_all_on();
+    if (believes_firm) believe_firm(true);
     solve_switches(least_switch, kSearchTolerance, kSearchSteps, kSearchRounds);
+    if (believes_firm) believe_firm(false);
     if (const double reached = robust_cost(solver_); reached < least) {
       least = reached;
       best = solver_.poses();
@@ -120,43 +138,53 @@ void Search::find_best_start() {
   const bool is_chain = believed_cost(solver_) < kChained;
   try_from(best, 0.0);
   if (!is_chain && !is_dear_) try_from(std::move(chain), 0.0);
+  const auto& links = solver_.links();
+  if (std::any_of(links.begin(), links.end(), is_firm)) try_from(best, kOff, true);
   try_from(best, kOff);
   solver_.set_poses(std::move(best));
+}
+
+/// Makes firm links part of what is always believed, or no longer.
+void Search::believe_firm(bool believe) {
+  for (std::size_t k = 0; k < solver_.links().size(); ++k) {
+    if (is_firm(solver_.links()[k])) solver_.set_switchable(k, !believe);
+  }
 }
 
 /// With the links whose best switch is at least this, then with those that are not off.
 void Search::solve_switches(double least_switch, double tolerance, int most_steps, int most_rounds) {
   std::vector<bool> on;
   for (const Link& link : solver_.links()) {
-    on.push_back(!link.switchable || solver_.best_switch(solver_.squared_error(link)) >= least_switch);
+    on.push_back(!link.switchable || solver_.best_switch(link, solver_.squared_error(link)) >= least_switch);
   }
   solver_.use(on);
   is_dear_ = solver_.fill() >= kDear;
   converge(tolerance, kFirstSteps);
-  const auto is_not_off = [this](const Link&, double chi2, int) { return solver_.best_switch(chi2) >= kOff; };
+  const auto is_not_off = [this](const Link& link, int) {
+    return solver_.best_switch(link, solver_.squared_error(link)) >= kOff;
+  };
   settle(is_not_off, tolerance, most_steps, most_rounds);
 }
 
 /// Leaves out the links that disagree, until those that are left agree with each other.
 void Search::decide() {
-  const double agreeing_switch = solver_.best_switch(kAgreement);
-  const auto agrees = [agreeing_switch](const Link& link, double chi2, int round) {
-    if (round == 0 && link.s > agreeing_switch) return chi2 <= kSurprise;  // may pull before it is judged
-    return chi2 <= kAgreement && (round < kRoundsBothWays || link.on);
+  const auto agrees = [this](const Link& link, int round) {
+    const double doubt = strain(solver_, link);
+    if (round == 0 && link.s > agreeing_switch(link)) return doubt <= kSurprise;  // may pull before it is judged
+    return doubt <= kAgreement && (round < kRoundsBothWays || link.on);
   };
   settle(agrees, kTolerance, max_iterations_, max_iterations_);
 }
 
-/// Solves with the links that the rule chooses by their squared errors, again and again until they stay the same.
+/// Solves with the links that the rule chooses, again and again until they stay the same.
 template <typename Rule>
 void Search::settle(const Rule& takes_part, double tolerance, int most_steps, int most_rounds) {
   for (int round = 0; round < most_rounds; ++round) {
     std::vector<bool> on;
     for (std::size_t k = 0; k < solver_.links().size(); ++k) {
       const Link& link = solver_.links()[k];
-      const double chi2 = solver_.squared_error(link);
-      on.push_back(!link.switchable || takes_part(link, chi2, round));
-      if (link.switchable) solver_.set_switch(k, solver_.best_switch(chi2));
+      on.push_back(!link.switchable || takes_part(link, round));
+      if (link.switchable) solver_.set_switch(k, solver_.best_switch(link, solver_.squared_error(link)));
     }
     if (!solver_.use(on) && round > 0) return;
     converge(tolerance, most_steps);

@@ -27,8 +27,10 @@ class Search {
 
  private:
   bool is_surprised() const;
+  double agreeing_switch(const Link& link) const;
   void switch_all_on();
   void find_best_start();
+  void believe_firm(bool believe);
   void solve_switches(double least_switch, double tolerance, int most_steps, int most_rounds);
   void decide();
   template <typename Rule>

@@ -11,19 +11,39 @@
 namespace oort {
 namespace {
 
-/// Up to `size` nodes of the dock's segment: the dock's node and those after it, then those before it; none within
-/// the query's submap, which would match itself.
-std::vector<std::uint64_t> reference_nodes(const Chains& chains, std::uint64_t dock, std::uint64_t size,
-                                           std::uint64_t query_begin, std::uint64_t query) {
-  const bool shared = chains.same_segment(dock, query);
-  std::vector<std::uint64_t> nodes;
-  const auto take = [&](std::uint64_t node) {
-    if (nodes.size() < size && chains.is_matched(node) && !(shared && node >= query_begin && node <= query))
-      nodes.push_back(node);
+// What is known without a look: the reach of the contacts and the dock's moves are limits, not deviations.
+constexpr double kSigmasOfReach = 2.0;
+
+// How far the chain is bent over the nodes that are matched, as standard deviations: matched closures in homes seen
+// with 60 degrees are off by up to 7 cm and 4 degrees where every point fits.
+constexpr double kBend = 0.03;       // [m]
+constexpr double kBendTheta = 0.02;  // [rad]
+
+/// Up to `size` nodes around the dock: its node and those after it, then those before it; none of the query's submap,
+/// which would match itself.
+std::vector<PlacedNode> reference_nodes(const Map& map, const Chains& chains, std::uint64_t dock, std::size_t size,
+                                        const std::vector<PlacedNode>& query_nodes) {
+  const auto is_query = [&query_nodes](const PlacedNode& placed) {
+    return std::any_of(query_nodes.begin(), query_nodes.end(),
+                       [&placed](const PlacedNode& query) { return query.node == placed.node; });
   };
-  for (std::uint64_t node = dock; node < chains.segment_end(dock); ++node) take(node);
-  for (std::uint64_t node = dock; node > chains.segment_begin(dock); --node) take(node - 1);
+  std::vector<PlacedNode> nodes;
+  const auto take = [&](const PlacedNode& placed) {
+    if (nodes.size() < size && !is_query(placed)) nodes.push_back(placed);
+  };
+  for (const PlacedNode& placed : walk_chain(map, chains, dock, Direction::kForward, size)) take(placed);
+  const std::vector<PlacedNode> before = walk_chain(map, chains, dock, Direction::kBackward, size);
+  std::for_each(before.begin() + 1, before.end(), take);  // the dock's own node was taken
   return nodes;
+}
+
+/// What is seen from some nodes, in the frame of what they are seen from.
+frsm::Points points_of(const Map& map, const std::vector<PlacedNode>& nodes) {
+  frsm::Points points;
+  for (const PlacedNode& placed : nodes) {
+    append_transformed(returns_of(map.clouds[placed.node]), placed.T_origin_node, points);
+  }
+  return points;
 }
 
 }  // namespace
@@ -44,6 +64,16 @@ DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query
   return nearest;
 }
 
+void make_dock_closures_firm(Map& map, double firmness) {
+  for (SwitchableEdge& edge : map.graph.switchable_edges) {
+    if (edge.i > edge.j) continue;
+    const auto matched_it = [&edge](const LoopResult& result) {
+      return result.id == edge.i && result.target == edge.j && result.hit_fraction > 0.0;
+    };
+    if (std::any_of(map.loop_results.begin(), map.loop_results.end(), matched_it)) edge.firmness = firmness;
+  }
+}
+
 DockGraphBuilder::DockGraphBuilder(const Parameters& parameters)
     : parameters_(parameters.dock_graph_builder),
       table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
@@ -59,7 +89,14 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
   if (dock.node == query) {
     reason = "same_node";
   } else {
-    closure = match(map, chains, query, dock, reason);
+    const auto least = static_cast<std::uint64_t>(parameters_.dock_match_least_size);
+    auto size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
+    closure = match(map, chains, query, dock, size, reason);
+    while (!closure && size / 2 >= least) {
+      size /= 2;
+      std::string later;  // what the documented number of nodes says is what counts
+      closure = match(map, chains, query, dock, size, later);
+    }
   }
   if (closure) {
     ++counts.accepted;
@@ -70,16 +107,11 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
 }
 
 std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
-                                               const DockPlace& dock, std::string& reason) const {
-  const std::uint64_t query_size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
-  const std::uint64_t first =
-      std::max(chains.segment_begin(query), query + 1 - std::min<std::uint64_t>(query_size, query + 1));
-  std::vector<std::uint64_t> query_nodes;
-  for (std::uint64_t node = first; node <= query; ++node) {
-    if (chains.is_matched(node) || node == query) query_nodes.push_back(node);
-  }
-  const std::vector<std::uint64_t> reference =
-      reference_nodes(chains, dock.node, static_cast<std::uint64_t>(parameters_.dock_submap_size), first, query);
+                                               const DockPlace& dock, std::uint64_t query_size,
+                                               std::string& reason) const {
+  const std::vector<PlacedNode> query_nodes = walk_chain(map, chains, query, Direction::kBackward, query_size);
+  const std::vector<PlacedNode> reference =
+      reference_nodes(map, chains, dock.node, static_cast<std::size_t>(parameters_.dock_submap_size), query_nodes);
   if (reference.empty()) {
     reason = "no_reference";
     return std::nullopt;
@@ -87,12 +119,10 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
 
   // The robot touches the contacts somewhere along their size, and the dock may have been moved.
   const double reach = std::max(parameters_.dock_contacts_size + parameters_.dock_max_translation, table_.cell);
-  const frsm::Prior prior{
-      to_frsm(dock.T_node_dock),
-      Eigen::Vector3d(reach * reach, reach * reach, parameters_.search_window_theta * parameters_.search_window_theta)
-          .asDiagonal()};
-  const auto submap = draw_submap(map, chains, dock.node, reference, table_, contours_);
-  const frsm::Match match = matcher_.match(*submap, gather_points(map, chains, query, query_nodes), prior.mean,
+  const Eigen::Vector3d limits(reach, reach, parameters_.search_window_theta);
+  const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / kSigmasOfReach).cwiseAbs2().asDiagonal()};
+  const auto submap = draw_submap(map, reference, table_, contours_);
+  const frsm::Match match = matcher_.match(*submap, points_of(map, query_nodes), prior.mean,
                                            {reach, reach, parameters_.search_window_theta}, &prior);
   const Pose2 T_dock_query = from_frsm(match.pose);
   if (match.status == frsm::Status::kTooFewPoints || match.status == frsm::Status::kEmptyScan) {
@@ -106,7 +136,11 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
     reason = "distance";
   } else {
-    return Closure{dock.node, query, T_dock_query, match.covariance, match.hit_fraction};
+    Eigen::Matrix3d covariance = match.covariance;
+    if (parameters_.closure_firmness > 1.0) {  // what can hardly be doubted must be honest
+      covariance += Eigen::Vector3d(kBend, kBend, kBendTheta).cwiseAbs2().asDiagonal();
+    }
+    return Closure{dock.node, query, T_dock_query, covariance, match.hit_fraction, parameters_.closure_firmness};
   }
   return std::nullopt;
 }

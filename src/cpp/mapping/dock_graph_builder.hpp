@@ -22,19 +22,24 @@ struct DockPlace {
 /// segment (REQUIREMENTS C-14).
 DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query);
 
+/// Says again of a loaded map's dock closures how firm they are. Of all closures they alone lead from the older node to
+/// the newer one (REQUIREMENTS O-49, C-24), and only what was matched is firm.
+void make_dock_closures_firm(Map& map, double firmness);
+
 /// Links a node at the dock to the dock's own node by matching what was last seen with what was seen when the dock was
 /// first left (REQUIREMENTS O-88).
 class DockGraphBuilder {
  public:
   explicit DockGraphBuilder(const Parameters& parameters);
 
-  /// The closure from the dock's node to `query`, a node recorded on the dock. Where too little is seen to match, it is
-  /// the dock's own place with the reach of its contacts as deviation. Counts the attempt.
+  /// The closure from the dock's node to `query`, a node recorded on the dock: the latest nodes matched together, or,
+  /// if that is refused, fewer and fewer of them. Where too little is seen to match, it is the dock's own place with
+  /// the reach of its contacts as two deviations. Counts the attempt.
   std::optional<Closure> find(const Map& map, const Chains& chains, std::uint64_t query, ClosureCounts& counts) const;
 
  private:
   std::optional<Closure> match(const Map& map, const Chains& chains, std::uint64_t query, const DockPlace& dock,
-                               std::string& reason) const;
+                               std::uint64_t query_size, std::string& reason) const;
 
   DockGraphBuilderParameters parameters_;
   frsm::TableParams table_;

@@ -135,6 +135,7 @@ void Mapper::set_map(Map map) {
   const std::optional<std::string> defect = find_defect(map);
   if (defect) throw InputError("this map cannot be used: " + *defect);
   map_ = std::move(map);
+  make_dock_closures_firm(map_, parameters_.dock_graph_builder.closure_firmness);
   chains_ = Chains::of_map(map_);
   loops_ = LoopClosureBuilder(parameters_);  // the submaps it remembers are of the old map
   next_edge_id_ = map_.graph.edges.size() + map_.graph.switchable_edges.size();
@@ -303,7 +304,8 @@ double Mapper::add_closure(const Closure& closure) {
        closure.from,
        closure.to,
        {map_.clouds[closure.from].time, closure.from, closure.T_from_to, closure.covariance, ConstraintType::kLaser},
-       1.0});
+       1.0,
+       closure.firmness});
   map_.loop_results.push_back({closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
   ++pending_closures_;
   return error.dot(closure.covariance.ldlt().solve(error));

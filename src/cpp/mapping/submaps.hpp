@@ -9,16 +9,16 @@
 #include <memory>
 #include <vector>
 
+#include "oort/mapping/chain_walk.hpp"
 #include "oort/mapping/chains.hpp"
 #include "oort/mapping/map.hpp"
 #include "oort/mapping/submap_cache.hpp"
 
 namespace oort {
 
-/// Draws the scans of some nodes of one segment into a table, in the frame of `origin`, a node of that segment.
-std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const Chains& chains, std::uint64_t origin,
-                                               const std::vector<std::uint64_t>& nodes, const frsm::TableParams& table,
-                                               const frsm::ContourParams& contours);
+/// Draws the scans of some nodes into a table, in the frame of what they are seen from.
+std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const std::vector<PlacedNode>& nodes,
+                                               const frsm::TableParams& table, const frsm::ContourParams& contours);
 
 /// The returns of some nodes of one segment, in the frame of `origin`, a node of that segment; those farther than
 /// `reach` [m] from where they were seen are left out.

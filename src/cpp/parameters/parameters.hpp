@@ -238,6 +238,8 @@ struct DockGraphBuilderParameters {
   double dock_match_max_dist;
   double dock_match_min_hit_pct;
   double search_window_theta;
+  int dock_match_least_size;
+  double closure_firmness;
 };
 
 /// Finding the robot on a map without a guess.
