@@ -20,18 +20,20 @@ from typing import Any
 
 import numpy as np
 
-from accuracy import ROOT, describe
+from accuracy import describe
 from oort import InputError, Map, Parameters, Session, read_parameters
 from oort.evaluate import alignment, evaluate_relations
 from oort.export.tum import Trajectory
 from oort.merge import Merged, merge_maps
 from oort.poses import Array, compose
-from oort.recording import Pose, Recording, Scan, open_recording
+from oort.recording import Recording, Scan, open_recording
 from oort.trajectory import TrajectoryRecorder
 from relocalisation import Homes
 from trials.closures import ON, false_closures
 from trials.drives import Recipe
 from trials.truth import true_nodes
+
+ROOT = Path(__file__).resolve().parents[1]
 
 LOGS = ("fr079", "intel", "fr079:3", "intel:3")
 """Names of logs, and the range beyond which readings are cut [m]."""
