@@ -46,7 +46,11 @@ ROWS = (
     "alike rooms, dock",
     "alike rooms",
     "other home",
+    "other home, dock",
+    "other home of alike rooms",
+    "other home of alike rooms, dock",
 )
+"""With dock: both maps have a dock. Of other homes everything must be refused."""
 
 RESUMED_AT = (0.3, -0.2, 0.1)
 """By how much a session is told a wrong pose [m, rad]."""
@@ -140,11 +144,11 @@ def measure_log(log: str, data: Path, parameters: Parameters, folder: Path) -> d
 
 
 def _recipes(row: str, seed: int) -> tuple[Recipe, Recipe]:
-    base = Recipe(seed, scene="alike" if row.startswith("alike") else "home")
+    base = Recipe(seed, scene="alike" if "alike" in row else "home")
     if row == "view of 90 degrees":
         base = replace(base, field_of_view=90)
     other = replace(base, way=1, moved=4 if row == "furniture moved" else 0)
-    return base, replace(other, seed=seed + 1) if row == "other home" else other
+    return base, replace(other, seed=seed + 1) if row.startswith("other") else other
 
 
 def measure_home(homes: Homes, row: str, seed: int) -> dict[str, Any]:

@@ -33,7 +33,7 @@ constexpr double kVoxel = 0.1;       // [m]
 
 // Shares of the returns of a view.
 constexpr double kFits = 0.75;        // support of one that fits
-constexpr double kContradicts = 0.3;  // of what cannot be, of one that contradicts
+constexpr double kContradicts = 0.3;  // what cannot be, of one that contradicts
 
 constexpr int kNeeded = 3;  // views, unless there are fewer
 
@@ -86,19 +86,23 @@ class PlacementSearch {
 
   /// What all views say of a placement. It is moved to where those that fit say.
   MapPlacement weigh(const Pose2& T_target_query) const {
-    const std::vector<Matched> first = match_near(T_target_query);
-    return summary(match_near(middle(first, T_target_query)), T_target_query);
+    return summary(opinions(middle(opinions(T_target_query), T_target_query)), T_target_query);
   }
 
  private:
-  struct Matched {
+  /// What a view says of a placement, near to which it was matched.
+  struct Opinion {
     std::size_t view;
-    Pose2 T_target_query;
-    Support support;
+    Pose2 T_target_query;  ///< as matched
+    Support matched;       ///< there
+    Support expected;      ///< at the placement itself
 
-    bool fits() const { return support.value() >= kFits; }
-    bool contradicts() const {
-      return support.blocked + support.turned + support.in_free > kContradicts * support.points;
+    bool fits() const { return matched.value() >= kFits; }
+    bool contradicts() const { return cannot_be(matched) && cannot_be(expected); }
+
+    /// A wall that was seen from its other side only is nothing impossible.
+    static bool cannot_be(const Support& support) {
+      return support.blocked + support.in_free > kContradicts * support.points;
     }
   };
 
@@ -126,22 +130,25 @@ class PlacementSearch {
     return static_cast<int>(std::count(agrees.begin(), agrees.end(), true));
   }
 
-  std::vector<Matched> match_near(const Pose2& T_target_query) const {
-    std::vector<Matched> matched;
+  std::vector<Opinion> opinions(const Pose2& T_target_query) const {
+    std::vector<Opinion> opinions;
     for (std::size_t k = 0; k < views_.size(); ++k) {
-      const MapView& view = views_[k];
-      const frsm::Match match =
-          matcher_.match(reference_->fine(), points_of(view), to_frsm(T_target_query * view.T_map_sensor),
-                         {kNear, kNear, kNearAngle}, nullptr);
-      Matched result{k, from_frsm(match.pose) * inverse(view.T_map_sensor), {}};
-      for (const PlacedScan& scan : view.scans) {
-        reference_->weigh(scan.cloud,
-                          from_frsm(match.pose) * between(view.scans.back().T_odom_sensor, scan.T_odom_sensor),
-                          result.support);
-      }
-      matched.push_back(result);
+      const Pose2 expected = T_target_query * views_[k].T_map_sensor;
+      const frsm::Match match = matcher_.match(reference_->fine(), points_of(views_[k]), to_frsm(expected),
+                                               {kNear, kNear, kNearAngle}, nullptr);
+      const Pose2 matched = from_frsm(match.pose);
+      opinions.push_back({k, matched * inverse(views_[k].T_map_sensor), support(k, matched), support(k, expected)});
     }
-    return matched;
+    return opinions;
+  }
+
+  Support support(std::size_t view, const Pose2& T_target_sensor) const {
+    Support support;
+    const std::vector<PlacedScan>& scans = views_[view].scans;
+    for (const PlacedScan& scan : scans) {
+      reference_->weigh(scan.cloud, T_target_sensor * between(scans.back().T_odom_sensor, scan.T_odom_sensor), support);
+    }
+    return support;
   }
 
   static frsm::Points points_of(const MapView& view) {
@@ -157,13 +164,13 @@ class PlacementSearch {
   }
 
   /// Of the views that fit, the placement that most others agree with; `otherwise` if none fits.
-  Pose2 middle(const std::vector<Matched>& matched, const Pose2& otherwise) const {
+  Pose2 middle(const std::vector<Opinion>& opinions, const Pose2& otherwise) const {
     Pose2 best = otherwise;
     double least = -1.0;
-    for (const Matched& one : matched) {
+    for (const Opinion& one : opinions) {
       if (!one.fits()) continue;
       double apart = 0.0;
-      for (const Matched& other : matched) {
+      for (const Opinion& other : opinions) {
         if (!other.fits()) continue;
         const Pose2& there = views_[other.view].T_map_sensor;
         apart += (one.T_target_query * there.translation() - other.T_target_query * there.translation()).norm();
@@ -176,14 +183,14 @@ class PlacementSearch {
   }
 
   /// With the target as map a and the query as map b.
-  MapPlacement summary(const std::vector<Matched>& matched, const Pose2& otherwise) const {
+  MapPlacement summary(const std::vector<Opinion>& opinions, const Pose2& otherwise) const {
     MapPlacement placement;
-    placement.T_a_b = middle(matched, otherwise);
-    const Matched* best = nullptr;
-    for (const Matched& one : matched) {
+    placement.T_a_b = middle(opinions, otherwise);
+    const Opinion* best = nullptr;
+    for (const Opinion& one : opinions) {
       if (one.fits()) ++placement.fits;
       if (one.contradicts()) ++placement.contradicts;
-      if (best == nullptr || one.support.value() > best->support.value()) best = &one;
+      if (best == nullptr || one.matched.value() > best->matched.value()) best = &one;
     }
     if (best == nullptr) return placement;
     placement.node_b = views_[best->view].node;
