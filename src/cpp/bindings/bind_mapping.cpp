@@ -29,14 +29,6 @@ const char* name_of(ScanOutcome outcome) {
   return "";
 }
 
-py::dict dict_of(const ClosureCounts& counts) {
-  py::dict dict;
-  dict["tried"] = counts.tried;
-  dict["accepted"] = counts.accepted;
-  dict["refused"] = py::cast(counts.refused);
-  return dict;
-}
-
 py::dict dict_of(const RefinementCounts& counts) {
   py::dict dict;
   dict["rounds"] = counts.rounds;
@@ -167,6 +159,14 @@ void bind_scan_result(py::module_& m) {
 }
 
 }  // namespace
+
+py::dict dict_of(const ClosureCounts& counts) {
+  py::dict dict;
+  dict["tried"] = counts.tried;
+  dict["accepted"] = counts.accepted;
+  dict["refused"] = py::cast(counts.refused);
+  return dict;
+}
 
 void bind_mapping(py::module_& m) {
   bind_odometry(m);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/mapping/statistics.hpp"
 
 namespace oort {
 
@@ -20,6 +21,9 @@ inline PoseTuple tuple_of(const Pose2& p) {
   return {p.x, p.y, p.theta};
 }
 
+/// Tried, accepted, and refused by reason.
+pybind11::dict dict_of(const ClosureCounts& counts);
+
 /// A file's text need not be UTF-8; what is not becomes U+FFFD instead of an exception.
 pybind11::str to_str(const std::string& text);
 
@@ -28,5 +32,6 @@ void bind_map(pybind11::module_& m);
 void bind_graph(pybind11::module_& m);
 void bind_mapping(pybind11::module_& m);
 void bind_localization(pybind11::module_& m);
+void bind_merging(pybind11::module_& m);
 
 }  // namespace oort

@@ -22,4 +22,5 @@ PYBIND11_MODULE(_core, m) {
   oort::bind_graph(m);
   oort::bind_mapping(m);
   oort::bind_localization(m);
+  oort::bind_merging(m);
 }

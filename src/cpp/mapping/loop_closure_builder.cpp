@@ -114,12 +114,12 @@ LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
       scan_matcher_(make_loop_matcher(parameters, scan_scale(parameters_, search_))),
       way_matcher_(make_loop_matcher(parameters, kWay)) {}
 
-void LoopClosureBuilder::look(const Map& map, const Chains& chains, std::uint64_t query) {
+void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end) {
   if (search_.is_adaptive()) {
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
   }
-  for (const std::uint64_t candidate : candidates(map, chains, query)) {
+  for (const std::uint64_t candidate : candidates(map, chains, query, end)) {
     const SearchWindow window = this->window(map, query, candidate);
     const bool wide = search_.is_adaptive() && is_wide(window);
     if (wide && is_seeking(chains, query)) waiting_.push_back({query, candidate, narrowed(window)});
@@ -183,12 +183,13 @@ std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map&
   return believed;
 }
 
-std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const Chains& chains,
-                                                          std::uint64_t query) const {
+std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const Chains& chains, std::uint64_t query,
+                                                          std::uint64_t end) const {
   const CandidateSearchParameters& search = parameters_.candidate_search;
   const Eigen::Vector2d center = map.graph.nodes[query].pose.translation();
   std::vector<std::pair<double, std::uint64_t>> by_distance;
   for (const Node& node : map.graph.nodes) {
+    if (node.id >= end) break;
     const bool has_submap =
         (node.id - chains.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
     const double distance = (node.pose.translation() - center).norm();

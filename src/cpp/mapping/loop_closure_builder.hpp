@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -42,7 +43,12 @@ class LoopClosureBuilder {
   explicit LoopClosureBuilder(const Parameters& parameters);
 
   /// Notes what is worth an attempt now that the newest node, `query`, is there.
-  void look(const Map& map, const Chains& chains, std::uint64_t query);
+  void look(const Map& map, const Chains& chains, std::uint64_t query) {
+    look_before(map, chains, query, map.graph.nodes.size());
+  }
+
+  /// The same of any node, with candidates among the nodes before `end` only.
+  void look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end);
 
   bool has_work() const { return !waiting_.empty(); }
 
@@ -54,8 +60,9 @@ class LoopClosureBuilder {
   std::vector<Closure> work_off(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log);
 
   /// Nodes worth matching against, nearest first: at most knearest_neighbors, none within the neighbourhood of another
-  /// or of the query. look() sets how uncertain each is.
-  std::vector<std::uint64_t> candidates(const Map& map, const Chains& chains, std::uint64_t query) const;
+  /// or of the query, all before `end`. look() sets how uncertain each is.
+  std::vector<std::uint64_t> candidates(const Map& map, const Chains& chains, std::uint64_t query,
+                                        std::uint64_t end = std::numeric_limits<std::uint64_t>::max()) const;
 
  private:
   std::vector<std::uint64_t> nearest(const std::vector<std::pair<double, std::uint64_t>>& by_distance,

@@ -427,6 +427,47 @@ class Localizer:
     def statistics(self) -> dict[str, Any]:
         """Counts since it was made."""
 
+class Merged:
+    """What came of merging two maps."""
+
+    @property
+    def map(self) -> Map:
+        """The map of both; a copy."""
+    @property
+    def first_node_b(self) -> int:
+        """The nodes of the first map have the ids before it."""
+    @property
+    def T_a_b(self) -> _Pose:  # noqa: N802
+        """Where the second map was found on the first, before anything was solved."""
+    @property
+    def found_by(self) -> str:
+        """given, dock or search."""
+    @property
+    def views(self) -> int:
+        """Views of one map that were looked for on the other."""
+    @property
+    def views_that_fit(self) -> int:
+        """Where the map was found."""
+    @property
+    def views_that_contradict(self) -> int:
+        """Where the map was found."""
+    @property
+    def closures(self) -> dict[str, Any]:
+        """From the second map to the first: tried, accepted, and refused by reason."""
+    @property
+    def closures_kept(self) -> int:
+        """Accepted ones that are on at the last solution."""
+    @property
+    def dropped(self) -> list[tuple[str, str, float]]:
+        """(namespace, id, distance [m]) of each place of the second map that the first has already."""
+
+def merge_maps(a: Map, b: Map, parameters: Parameters, T_a_b: _Pose | None = None) -> Merged:  # noqa: N803
+    """Joins two maps of the same home into one in the frame of the first.
+
+    T_a_b is about where the second one's origin lies on the first; found if not given. Raises InputError and
+    ParameterError.
+    """
+
 def parameter_table() -> list[ParameterEntry]:
     """Every parameter once, in the order of params.json."""
 

@@ -46,8 +46,10 @@ class TrajectoryRecorder:
         self._nodes = [_NO_NODE] * len(self._nodes)
         self._made_node = [False] * len(self._made_node)
 
-    def base_poses(self, map_: Map) -> NDArray[np.float64]:
+    def base_poses(self, map_: Map, first_node: int = 0) -> NDArray[np.float64]:
         """T_map_base of every scan, (n, 3), in their order, at the map's solution.
+
+        ``first_node`` is the id that the drive's first node has there, if its map was merged into another.
 
         A scan between two nodes of a chain is carried by both: how far the solution moved the next node from where the
         scan matcher had seen it is given to the scans in proportion to their place between the two. Scans that no node
@@ -56,7 +58,7 @@ class TrajectoryRecorder:
         nodes = np.array(self._nodes, dtype=np.int64)
         if len(map_) == 0 or not (nodes != _NO_NODE).any():
             return np.array(self._odometry, dtype=np.float64).reshape(-1, 3)
-        carrier = np.maximum(nodes, 0)
+        carrier = np.maximum(nodes, 0) + first_node
         correction = _corrections(map_)[carrier] * self._progress(nodes)[:, None]
         relative = compose(np.array(self._relative).reshape(-1, 3), correction)
         base = compose(compose(map_.node_poses[carrier], relative), between(self._sensor_on_base, np.zeros(3)))
