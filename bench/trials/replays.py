@@ -64,7 +64,7 @@ def replay(
     solved = 0.0
     session.start()
     for scan in recording.scans():
-        schedule.maps(scan)
+        schedule.take(scan)
         if scan.time >= mark and session.mapper.has_pose:
             session.mapper.create_location("bench", "mark", session.mapper.sensor_pose)
             mark = math.inf

@@ -41,12 +41,18 @@ class Bag:
     messages: list[tuple[float, str, str, dict[str, Any]]] = field(default_factory=list)
 
     def scan(
-        self, time: float, topic: str = "/scan", frame: str = "laser", ranges: Sequence[float] = (1.0, 2.0, 3.0)
+        self,
+        time: float,
+        topic: str = "/scan",
+        frame: str = "laser",
+        ranges: Sequence[float] = (1.0, 2.0, 3.0),
+        time_increment: float = 0.0,
     ) -> "Bag":
         content = {
             "header": {"time": time, "frame": frame},
             "angles": (-0.5, 0.5, 0.25),
             "ranges": np.array(ranges, dtype=np.float32),
+            "time_increment": time_increment,
         }
         self.messages.append((time, topic, "sensor_msgs/msg/LaserScan", content))
         return self
@@ -80,6 +86,13 @@ class Bag:
             "q": yaw_quaternion(yaw),
         }
         self.messages.append((time, topic, "nav_msgs/msg/Odometry", content))
+        return self
+
+    def imu(
+        self, time: float, rate: Sequence[float], frame: str = "base", topic: str = "/imu", told: bool = True
+    ) -> "Bag":
+        content = {"header": {"time": time, "frame": frame}, "rate": rate, "told": told}
+        self.messages.append((time, topic, "sensor_msgs/msg/Imu", content))
         return self
 
     def ros1(self, path: Path) -> Path:
@@ -120,12 +133,24 @@ def _message(t: Any, kind: str, content: dict[str, Any], is1: bool) -> Any:
             angle_min=first,
             angle_max=last,
             angle_increment=step,
-            time_increment=0.0,
+            time_increment=content["time_increment"],
             scan_time=0.1,
             range_min=0.1,
             range_max=5.5,
             ranges=content["ranges"],
             intensities=np.zeros(0, dtype=np.float32),
+        )
+    if kind == "sensor_msgs/msg/Imu":
+        vector = t["geometry_msgs/msg/Vector3"]
+        rx, ry, rz = map(float, content["rate"])
+        return t[kind](
+            header=header,
+            orientation=t["geometry_msgs/msg/Quaternion"](x=0.0, y=0.0, z=0.0, w=1.0),
+            orientation_covariance=np.zeros(9),
+            angular_velocity=vector(x=rx, y=ry, z=rz),
+            angular_velocity_covariance=np.array([0.0 if content["told"] else -1.0, *np.zeros(8)]),
+            linear_acceleration=vector(x=0.0, y=0.0, z=0.0),
+            linear_acceleration_covariance=np.zeros(9),
         )
     qx, qy, qz, qw = map(float, content["q"])
     rotation = t["geometry_msgs/msg/Quaternion"](x=qx, y=qy, z=qz, w=qw)

@@ -71,12 +71,13 @@ def test_the_packaged_files_are_strict_json_with_the_values_of_the_table() -> No
     assert packaged_parameters("kuri_original").to_dict() == {e.path: e.documented for e in parameter_table()}
 
 
-def test_the_cartographer_preset_chooses_its_matchers_and_nothing_else() -> None:
+def test_the_cartographer_preset_chooses_its_parts_and_nothing_else() -> None:
     preset = packaged_parameters("cartographer").to_dict()
     differing = {path: preset[path] for path, value in Parameters().to_dict().items() if preset[path] != value}
     assert differing == {
         "incremental_graph_builder.scanmatcher": "cartographer_matcher",
         "loop_closure_graph_builder.scanmatcher": "branch_and_bound_matcher",
+        "time_update": 5.0,
     }
 
 

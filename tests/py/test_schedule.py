@@ -46,7 +46,7 @@ def logged(*scans_and_calls: float | str) -> list[Event]:
 def walk(schedule: Schedule, made: Made, times: list[float], until: float = math.inf) -> Made:
     """Goes through a recording; scans that are mapped go down as their times."""
     for t in times:
-        if schedule.maps(scan(t)):
+        if schedule.take(scan(t)) is not None:
             made.append(f"{t:g}")
     schedule.finish(until)
     return made

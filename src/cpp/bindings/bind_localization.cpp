@@ -38,16 +38,17 @@ py::dict dict_of(const Support& s) {
 }
 
 PlacedScan placed_scan(double time, double angle_min, double angle_increment, double range_min, double range_max,
-                       const Ranges& ranges, const PoseTuple& T_odom_sensor) {
-  return {to_point_cloud({time, angle_min, angle_increment, range_min, range_max,
-                          std::vector<float>(ranges.data(), ranges.data() + ranges.size())}),
-          pose_of(T_odom_sensor)};
+                       const Ranges& ranges, const PoseTuple& T_odom_sensor, const SweepTuple& sweep) {
+  const PointCloud cloud = to_point_cloud({time, angle_min, angle_increment, range_min, range_max,
+                                           std::vector<float>(ranges.data(), ranges.data() + ranges.size())});
+  return {compensate_motion(cloud, sweep_of(sweep)), pose_of(T_odom_sensor)};
 }
 
 void bind_reference(py::module_& m) {
   py::class_<PlacedScan>(m, "PlacedScan", "A scan and where odometry saw it.")
       .def(py::init(&placed_scan), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
-           py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("sensor_in_odom"));
+           py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("sensor_in_odom"),
+           py::arg("sweep") = py::none(), "The sweep is the sensor's.");
   py::class_<ReferenceMap, std::shared_ptr<ReferenceMap>>(m, "ReferenceMap",
                                                           "A saved map made ready to find a robot on it.")
       .def(py::init<const Map&, const Parameters&>(), py::arg("map"), py::arg("parameters"),
@@ -113,16 +114,16 @@ void bind_localizer(py::module_& m) {
       .def(
           "add_scan",
           [](Localizer& l, double time, double angle_min, double angle_increment, double range_min, double range_max,
-             const Ranges& ranges, const PoseTuple& odometry) {
+             const Ranges& ranges, const PoseTuple& odometry, const SweepTuple& sweep) {
             const LaserScan scan{
                 time,      angle_min, angle_increment,
                 range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
             const py::gil_scoped_release release;
-            l.add_scan(scan, pose_of(odometry));
+            l.add_scan(scan, pose_of(odometry), sweep_of(sweep));
           },
           py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
-          py::arg("ranges"), py::arg("odometry"),
-          "Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then.")
+          py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
+          "Takes the next scan as Mapper.add_scan does. Raises InputError; nothing changes then.")
       .def_property_readonly(
           "state", [](const Localizer& l) { return std::string(to_string(l.state())); },
           "\"searching\", \"tracking\", \"uncertain\" or \"lost\".")

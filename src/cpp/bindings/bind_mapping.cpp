@@ -10,7 +10,6 @@
 
 #include "oort/bindings/bindings.hpp"
 #include "oort/mapping/mapper.hpp"
-#include "oort/mapping/odometry_buffer.hpp"
 
 namespace py = pybind11;
 
@@ -119,27 +118,6 @@ py::list locations_of(const Mapper& mapper) {
   return list;
 }
 
-void bind_odometry(py::module_& m) {
-  py::class_<OdometryBuffer>(m, "OdometryBuffer", "Odometry poses by time, interpolated at a scan's stamp.")
-      .def(py::init<double>(), py::arg("horizon") = 0.0,
-           "Poses older than `horizon` [s] before the newest are dropped; 0 keeps all.")
-      .def(
-          "add",
-          [](OdometryBuffer& b, double t, double x, double y, double theta) {
-            b.add(t, {x, y, theta});
-          },
-          py::arg("time"), py::arg("x"), py::arg("y"), py::arg("theta"), "Adds T_odom_base at a time [s].")
-      .def(
-          "lookup",
-          [](const OdometryBuffer& b, double t) -> std::optional<PoseTuple> {
-            const auto pose = b.lookup(t);
-            return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
-          },
-          py::arg("time"), "T_odom_base (x, y, theta) at a time [s]; None outside the times held.")
-      .def("clear", &OdometryBuffer::clear)
-      .def("__len__", &OdometryBuffer::size);
-}
-
 void bind_scan_result(py::module_& m) {
   py::class_<ScanResult>(m, "ScanResult", "What became of a scan.")
       .def_property_readonly(
@@ -169,7 +147,6 @@ py::dict dict_of(const ClosureCounts& counts) {
 }
 
 void bind_mapping(py::module_& m) {
-  bind_odometry(m);
   bind_scan_result(m);
   py::class_<Mapper>(m, "Mapper", "Turns scans with odometry into a map. Not thread-safe.")
       .def(py::init(
@@ -181,14 +158,17 @@ void bind_mapping(py::module_& m) {
       .def(
           "add_scan",
           [](Mapper& mapper, double time, double angle_min, double angle_increment, double range_min, double range_max,
-             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry) {
+             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
+             const SweepTuple& sweep) {
             const LaserScan scan = scan_of(time, angle_min, angle_increment, range_min, range_max, ranges);
             const py::gil_scoped_release release;
-            return mapper.add_scan(scan, pose_of(odometry));
+            return mapper.add_scan(scan, pose_of(odometry), sweep_of(sweep));
           },
           py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
-          py::arg("ranges"), py::arg("odometry"),
-          "Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then.")
+          py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
+          "Takes the next scan with T_odom_base at its stamp and, for one whose beams were not measured at once, where "
+          "the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError; "
+          "nothing changes then.")
       .def("notify_docked", &Mapper::notify_docked, py::call_guard<py::gil_scoped_release>(),
            "Links the current place to the dock. Whether a closure was found.")
       .def(

@@ -3,10 +3,13 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/geometry/sweep.hpp"
 #include "oort/mapping/statistics.hpp"
 
 namespace oort {
@@ -24,12 +27,20 @@ inline PoseTuple tuple_of(const Pose2& p) {
 /// Tried, accepted, and refused by reason.
 pybind11::dict dict_of(const ClosureCounts& counts);
 
+/// A sweep as Python has it: where the base was at the first beam and at the last.
+using SweepTuple = std::optional<std::pair<PoseTuple, PoseTuple>>;
+
+inline Sweep sweep_of(const SweepTuple& sweep) {
+  return sweep ? Sweep{pose_of(sweep->first), pose_of(sweep->second)} : Sweep{};
+}
+
 /// A file's text need not be UTF-8; what is not becomes U+FFFD instead of an exception.
 pybind11::str to_str(const std::string& text);
 
 void bind_parameters(pybind11::module_& m);
 void bind_map(pybind11::module_& m);
 void bind_graph(pybind11::module_& m);
+void bind_odometry(pybind11::module_& m);
 void bind_mapping(pybind11::module_& m);
 void bind_localization(pybind11::module_& m);
 void bind_merging(pybind11::module_& m);

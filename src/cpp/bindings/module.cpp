@@ -20,6 +20,7 @@ PYBIND11_MODULE(_core, m) {
   oort::bind_parameters(m);
   oort::bind_map(m);
   oort::bind_graph(m);
+  oort::bind_odometry(m);
   oort::bind_mapping(m);
   oort::bind_localization(m);
   oort::bind_merging(m);

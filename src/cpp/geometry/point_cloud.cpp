@@ -9,15 +9,12 @@
 #include "oort/geometry/errors.hpp"
 
 namespace oort {
-namespace {
 
 // Volatile, because GCC 12 drops a rounding to float32 and back where it vectorises the two coordinates (-O2 and up).
 double round_to_float32(double value) {
   const volatile float rounded = static_cast<float>(value);
   return rounded;
 }
-
-}  // namespace
 
 PointCloud to_point_cloud(const LaserScan& scan) {
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || std::isnan(scan.range_min) ||

@@ -41,6 +41,9 @@ struct PointCloud {
 /// Throws InputError if the scan's angles or limits are not finite.
 PointCloud to_point_cloud(const LaserScan& scan);
 
+/// The nearest number that fits into a float32, as the map file stores coordinates.
+double round_to_float32(double value);
+
 /// The number of returns in a cloud.
 std::size_t count_returns(const PointCloud& cloud);
 

@@ -45,6 +45,15 @@ Pose2 interpolate(const Pose2& from, const Pose2& to, double fraction) {
           wrap_angle(from.theta + fraction * wrap_angle(to.theta - from.theta))};
 }
 
+Pose2 along_arc(const Pose2& T_a_b, double fraction) {
+  const double half_turn = 0.5 * T_a_b.theta;
+  // The chord of a part of an arc: how long it is, and how far it points away from the chord of the whole.
+  const double length = std::abs(half_turn) < 1e-7 ? fraction : std::sin(fraction * half_turn) / std::sin(half_turn);
+  const double c = length * std::cos((fraction - 1.0) * half_turn);
+  const double s = length * std::sin((fraction - 1.0) * half_turn);
+  return {c * T_a_b.x - s * T_a_b.y, s * T_a_b.x + c * T_a_b.y, wrap_angle(fraction * T_a_b.theta)};
+}
+
 bool is_finite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.theta);
 }

@@ -33,6 +33,10 @@ Pose2 between(const Pose2& T_a_b, const Pose2& T_a_c);
 /// fraction 0 gives `from`, 1 gives `to`.
 Pose2 interpolate(const Pose2& from, const Pose2& to, double fraction);
 
+/// A part of the motion T_a_b that goes evenly along an arc (a constant twist: the exponential map of SE(2)).
+/// fraction 0 gives no motion, 1 gives T_a_b, more goes on along the arc.
+Pose2 along_arc(const Pose2& T_a_b, double fraction);
+
 bool is_finite(const Pose2& pose);
 
 /// Rotation matrix of an angle.

@@ -69,6 +69,7 @@ Localizer::Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& 
       parameters_(parameters.localization.tracking),
       kept_parameters_(parameters.localization.relocalizer),
       min_points_(parameters.min_pointcloud_size),
+      compensates_motion_(parameters.motion_compensation),
       T_base_sensor_(T_base_sensor),
       odometry_model_(model_of(parameters.incremental_graph_builder.odometry_noise)),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
@@ -100,11 +101,14 @@ void Localizer::start_searching() {
   state_ = LocalizationState::kSearching;
 }
 
-LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
+LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
   if (!is_finite(T_odom_base)) {
     throw InputError("localisation: the odometry pose is not finite; check the transform odom -> base");
   }
   PlacedScan now{to_point_cloud(scan), T_odom_base * T_base_sensor_};
+  if (compensates_motion_) {
+    now.cloud = compensate_motion(std::move(now.cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
+  }
   ++statistics_.scans;
   predict(now.T_odom_sensor);
   const bool sees = count_returns(now.cloud) >= static_cast<std::size_t>(min_points_);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
+#include "oort/geometry/sweep.hpp"
 #include "oort/localization/reference_map.hpp"
 #include "oort/localization/relocalizer.hpp"
 #include "oort/mapping/odometry_model.hpp"
@@ -51,8 +52,9 @@ class Localizer {
   /// Forgets the pose.
   void start_searching();
 
-  /// Takes the next scan. Throws InputError if the scan's limits or the pose are not finite; nothing changes then.
-  LocalizationState add_scan(const LaserScan& scan, const Pose2& T_odom_base);
+  /// Takes the next scan, as Mapper::add_scan does. Throws InputError if the scan's limits, the pose or the motion are
+  /// not finite; nothing changes then.
+  LocalizationState add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base = {});
 
   LocalizationState state() const { return state_; }
   /// The sensor's pose at the latest scan; none while searching.
@@ -86,6 +88,7 @@ class Localizer {
   TrackingParameters parameters_;
   RelocalizerParameters kept_parameters_;
   int min_points_;
+  bool compensates_motion_;
   Pose2 T_base_sensor_;
   OdometryModel odometry_model_;
   frsm::Matcher matcher_;

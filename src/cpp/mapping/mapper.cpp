@@ -52,7 +52,7 @@ void Mapper::mount_sensor(const Pose2& T_base_sensor) {
   T_base_sensor_ = T_base_sensor;
 }
 
-ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
+ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
   if (!is_finite(T_odom_base) || !std::isfinite(scan.time)) {
     throw InputError("scan: its time or odometry pose is not finite; check the transform odom -> base");
   }
@@ -61,7 +61,7 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
     throw StateError("the map was loaded: call begin_session() before the first scan");
   }
   LastScan now;
-  now.cloud = to_point_cloud(scan);
+  now.cloud = cloud_of(scan, sweep_of_base);
   now.T_odom_base_measured = T_odom_base;
   now.T_odom_base = T_odom_base;
   if (last_scan_ && incremental_.learns_odometry()) {
@@ -73,7 +73,7 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base) {
   const std::uint64_t solves_before = statistics_.solves;
 
   const bool has_points = count_returns(now.cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
-  bool due = has_points && is_due(now.T_odom_base);
+  bool due = has_points && is_due(now);
   if (has_points && (due || parameters_.incremental_graph_builder.match_every_scan)) {
     track(now);
   } else {
@@ -149,9 +149,18 @@ void Mapper::set_map(Map map) {
   look_at_solution();
 }
 
-bool Mapper::is_due(const Pose2& T_odom_base) const {
+// Odometry's own scales of way and turn are off by little over the length of a scan: the motion is taken as measured.
+PointCloud Mapper::cloud_of(const LaserScan& scan, const Sweep& sweep_of_base) const {
+  PointCloud cloud = to_point_cloud(scan);
+  if (!parameters_.motion_compensation) return cloud;
+  return compensate_motion(std::move(cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
+}
+
+bool Mapper::is_due(const LastScan& scan) const {
   if (next_link_ != NextLink::kChain) return true;
-  const Pose2 moved = between(T_odom_base_node_, T_odom_base);
+  const double since = std::abs(scan.cloud.time - map_.clouds.back().time);  // a clock may have been set back
+  if (parameters_.time_update > 0.0 && since >= parameters_.time_update) return true;
+  const Pose2 moved = between(T_odom_base_node_, scan.T_odom_base);
   return moved.translation().norm() >= parameters_.linear_update || std::abs(moved.theta) >= parameters_.angular_update;
 }
 

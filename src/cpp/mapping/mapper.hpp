@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
+#include "oort/geometry/sweep.hpp"
 #include "oort/graph/optimizer.hpp"
 #include "oort/mapping/chains.hpp"
 #include "oort/mapping/closure_log.hpp"
@@ -50,8 +51,10 @@ class Mapper {
   /// mapped, InputError if the pose is not finite.
   void mount_sensor(const Pose2& T_base_sensor);
 
-  /// Takes the next scan. Throws InputError if the scan's limits or the pose are not finite; nothing changes then.
-  ScanResult add_scan(const LaserScan& scan, const Pose2& T_odom_base);
+  /// Takes the next scan with odometry at its stamp and, for one whose beams were not measured at once, the base's
+  /// motion by odometry while it was taken. Throws InputError if the scan's limits, the pose or the motion are not
+  /// finite; nothing changes then.
+  ScanResult add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base = {});
 
   /// Says that the robot stands at the dock now: makes a node of the last scan and links it to the dock's node.
   /// Returns whether a closure was found. Throws StateError if there is no scan yet.
@@ -120,7 +123,8 @@ class Mapper {
     Pose2 T_odom_sensor;
   };
 
-  bool is_due(const Pose2& T_odom_base) const;
+  PointCloud cloud_of(const LaserScan& scan, const Sweep& sweep_of_base) const;
+  bool is_due(const LastScan& scan) const;
   bool has_moved_unnoticed(const LastScan& scan) const;
   void track(LastScan& scan);
   void leave_poor_local_map(LastScan& scan);

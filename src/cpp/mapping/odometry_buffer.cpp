@@ -8,6 +8,14 @@
 #include "oort/geometry/errors.hpp"
 
 namespace oort {
+namespace {
+
+// How long the motion lasts that an extrapolation goes on with: shorter, the noise of stamps and poses counts too much;
+// longer, it is not how the base moves now.
+constexpr double kLeastSpan = 0.05;  // [s]
+constexpr double kMostSpan = 0.5;    // [s]
+
+}  // namespace
 
 OdometryBuffer::OdometryBuffer(double horizon) : horizon_(horizon) {}
 
@@ -27,14 +35,28 @@ void OdometryBuffer::add(double time, const Pose2& T_odom_base) {
   }
 }
 
-std::optional<Pose2> OdometryBuffer::lookup(double time) const {
+std::optional<Pose2> OdometryBuffer::lookup(double time, double most_ahead) const {
   const auto after = std::lower_bound(samples_.begin(), samples_.end(), time,
                                       [](const Sample& sample, double t) { return sample.time < t; });
-  if (after == samples_.end()) return std::nullopt;
+  if (after == samples_.end()) {
+    const bool is_near = !samples_.empty() && time - samples_.back().time <= most_ahead;
+    return is_near ? extrapolate(time) : std::nullopt;
+  }
   if (after->time == time) return after->pose;
   if (after == samples_.begin()) return std::nullopt;
   const auto before = std::prev(after);
   return interpolate(before->pose, after->pose, (time - before->time) / (after->time - before->time));
+}
+
+std::optional<Pose2> OdometryBuffer::extrapolate(double time) const {
+  const Sample& newest = samples_.back();
+  for (auto sample = std::next(samples_.rbegin()); sample != samples_.rend(); ++sample) {
+    const double span = newest.time - sample->time;
+    if (span > kMostSpan) break;
+    if (span < kLeastSpan) continue;
+    return newest.pose * along_arc(between(sample->pose, newest.pose), (time - newest.time) / span);
+  }
+  return std::nullopt;
 }
 
 }  // namespace oort

@@ -20,8 +20,9 @@ class OdometryBuffer {
   /// Throws InputError if a value is not finite.
   void add(double time, const Pose2& T_odom_base);
 
-  /// T_odom_base at a time [s], along a straight line between the two neighbours; nothing outside the times held.
-  std::optional<Pose2> lookup(double time) const;
+  /// T_odom_base at a time [s], along a straight line between the two neighbours; nothing outside the times held, but
+  /// for up to `most_ahead` [s] after the newest pose: there the base goes on as the last poses moved, along an arc.
+  std::optional<Pose2> lookup(double time, double most_ahead = 0.0) const;
 
   void clear() { samples_.clear(); }
   std::size_t size() const { return samples_.size(); }
@@ -31,6 +32,8 @@ class OdometryBuffer {
     double time;
     Pose2 pose;
   };
+  std::optional<Pose2> extrapolate(double time) const;
+
   double horizon_;
   std::deque<Sample> samples_;  // by time
 };

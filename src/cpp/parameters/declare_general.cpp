@@ -14,6 +14,18 @@ void declare_general(const Section& v, Parameters& p) {
   v(p.linear_update, "linear_update", {0.2, "m", {0.001, 100}}, "A new node is made once the base moved this far.");
   v(p.angular_update, "angular_update", {0.6, "rad", {0.001, 3.15}},
     "A new node is made once the base turned this far.");
+  v(p.time_update, "time_update", {0.0, "s", {0.0, 86400.0}},
+    "A new node is made once so much time has passed since the last one, even if the base stands; 0: a parked robot "
+    "adds none.")
+      .own(0.0);
+  v(p.motion_compensation, "motion_compensation", true,
+    "Whether the beams of a scan with a time_increment are brought to its stamp by odometry (docs/motion.md).")
+      .own(false, "A scan that took 0.1 s while the robot turned at 1 rad/s is bent by 6 degrees otherwise.");
+  v(p.max_extrapolation, "max_extrapolation", {0.1, "s", {0.0, 1.0}},
+    "How far beyond the last odometry a scan may lie where no more odometry comes: its motion goes on evenly.")
+      .own(0.0, "The last scans of a drive count as well.");
+  v(p.use_imu, "use_imu", false, "Whether a gyro's yaw rate takes the place of odometry's turns (docs/motion.md).")
+      .own(false);
   v(p.min_pointcloud_size, "min_pointcloud_size", {3, "points", {1, 100000}}, "Scans with fewer returns are skipped.");
   v(p.switchable_constraint_scale, "switchable_constraint_scale", {4.0, "", {1e-6, 1e6}},
     "Weight of the squared pull of a loop closure's switch towards on: the larger, the harder it is switched off.")

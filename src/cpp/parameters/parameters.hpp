@@ -279,6 +279,10 @@ struct Parameters {
   std::string map_frame;
   double linear_update;
   double angular_update;
+  double time_update;
+  bool motion_compensation;
+  double max_extrapolation;
+  bool use_imu;
   int min_pointcloud_size;
   double switchable_constraint_scale;
   bool final_refinement;

@@ -236,10 +236,35 @@ class OdometryBuffer:
         """Poses older than `horizon` [s] before the newest are dropped; 0 keeps all."""
     def add(self, time: float, x: float, y: float, theta: float) -> None:
         """Adds T_odom_base at a time [s]."""
-    def lookup(self, time: float) -> _Pose | None:
-        """T_odom_base (x, y, theta) at a time [s]; None outside the times held."""
+    def lookup(self, time: float, most_ahead: float = 0.0) -> _Pose | None:
+        """T_odom_base (x, y, theta) at a time [s]; None outside the times held.
+
+        But for up to `most_ahead` [s] after the newest pose the base goes on as the last poses moved.
+        """
     def clear(self) -> None: ...
     def __len__(self) -> int: ...
+
+class GyroOdometry:
+    """Odometry whose turns are those of a gyro."""
+
+    def __init__(self) -> None: ...
+    def add_gyro(self, time: float, yaw_rate: float) -> None:
+        """Adds a yaw rate of the base [rad/s] at a time [s]."""
+    def add_odometry(self, time: float, x: float, y: float, theta: float) -> None:
+        """Adds T_odom_base at a time [s]."""
+    def take(self) -> list[tuple[float, float, float, float]]:
+        """The poses that are settled since the last call: time [s], x, y, theta of T_odom_base."""
+    def flush(self) -> None:
+        """Settles what is left, as the gyro tells nothing more."""
+    @property
+    def bias(self) -> float | None:
+        """Of the gyro [rad/s]; None until the base stood for a second."""
+    @property
+    def steps_by_gyro(self) -> int:
+        """Steps that have the gyro's turn."""
+    @property
+    def steps_by_odometry(self) -> int:
+        """Steps that have odometry's."""
 
 class ScanResult:
     """What became of a scan."""
@@ -284,8 +309,13 @@ class Mapper:
         range_max: float,
         ranges: ArrayLike,
         odometry: _Pose,
+        sweep: tuple[_Pose, _Pose] | None = None,
     ) -> ScanResult:
-        """Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then."""
+        """Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then.
+
+        For a scan whose beams were not measured at once, `sweep` is where the base was at the first and at the last
+        beam, seen from where it was at the stamp.
+        """
     def notify_docked(self) -> bool:
         """Links the current place to the dock. Whether a closure was found."""
     def begin_session(self, sensor_on_map: _Pose) -> None:
@@ -345,7 +375,9 @@ class PlacedScan:
         range_max: float,
         ranges: ArrayLike,
         sensor_in_odom: _Pose,
-    ) -> None: ...
+        sweep: tuple[_Pose, _Pose] | None = None,
+    ) -> None:
+        """The sweep is the sensor's."""
 
 class ReferenceMap:
     """A saved map made ready to find a robot on it."""
@@ -406,8 +438,9 @@ class Localizer:
         range_max: float,
         ranges: ArrayLike,
         odometry: _Pose,
+        sweep: tuple[_Pose, _Pose] | None = None,
     ) -> None:
-        """Takes the next scan with T_odom_base at its stamp. Raises InputError; nothing changes then."""
+        """Takes the next scan as Mapper.add_scan does. Raises InputError; nothing changes then."""
     @property
     def state(self) -> str:
         """searching, tracking, uncertain or lost."""

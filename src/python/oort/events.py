@@ -8,11 +8,12 @@ import json
 import os
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from oort.errors import InputError
+from oort.recording import Pose, Scan
 
 SCAN = "scan"
 """The call's name in an entry that stands for a scan."""
@@ -25,7 +26,7 @@ class Event:
     t: float
     """[s]"""
     call: str
-    """Name under the node, such as map/notify_docked; or SCAN: here the scan was mapped whose stamp is the argument."""
+    """Name under the node, such as map/notify_docked; or SCAN: here the scan was mapped that scan_entry() describes."""
     args: list[Any] = field(default_factory=list)
 
 
@@ -55,6 +56,33 @@ def _event(path: str | Path, number: int, entry: Any) -> Event:
     if not isinstance(call, str) or not isinstance(args, list):
         raise InputError(f'{where}: "call" must be a string and "args" a list')
     return Event(float(t), call, args)
+
+
+def scan_entry(scan: Scan) -> list[Any]:
+    """The arguments of a scan's entry: its stamp and, where a replay might find other odometry, the one it had."""
+    return [scan.stamp, scan.odometry, scan.sweep] if scan.guessed else [scan.stamp]
+
+
+def scan_of_entry(scan: Scan, args: Sequence[Any]) -> Scan | None:
+    """A recording's scan as it was mapped by an entry's arguments; None if they are of another scan.
+
+    Raises InputError if they cannot be.
+    """
+    if list(args[:1]) != [scan.stamp]:
+        return None
+    if len(args) == 1:
+        return scan
+    try:
+        _, odometry, sweep = args
+        ends = None if sweep is None else (_pose(sweep[0]), _pose(sweep[1]))
+        return replace(scan, odometry=_pose(odometry), sweep=ends)
+    except (TypeError, ValueError, IndexError) as error:
+        raise InputError(f"the entry of the scan {scan.stamp} cannot be: {list(args[1:])!r}") from error
+
+
+def _pose(values: Sequence[float]) -> Pose:
+    x, y, theta = map(float, values)
+    return x, y, theta
 
 
 class EventLog:

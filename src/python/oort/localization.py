@@ -23,6 +23,7 @@ from oort._core import (
 from oort.errors import InputError
 from oort.poses import between, compose
 from oort.recording import Pose, Recording, Scan
+from oort.recording.motion import Placement
 from oort.report import Stopwatch
 
 __all__ = [
@@ -165,9 +166,7 @@ def _note(drive: LocalizedDrive, scan: Scan) -> None:
 
 
 def _add(localizer: Localizer, scan: Scan) -> None:
-    localizer.add_scan(
-        scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, scan.odometry
-    )
+    localizer.add_scan(*scan.arguments)
 
 
 def _views(parameters: Parameters, scans: Sequence[Scan], sensor_on_base: Pose) -> list[PlacedScan]:
@@ -175,6 +174,7 @@ def _views(parameters: Parameters, scans: Sequence[Scan], sensor_on_base: Pose) 
     count = int(parameters.get("localization.relocalizer.max_scans"))
     distance = float(parameters.get("localization.relocalizer.scan_distance"))
     angle = float(parameters.get("localization.relocalizer.scan_angle"))
+    compensates = bool(parameters.get("motion_compensation"))
     views: list[PlacedScan] = []
     newer: NDArray[np.float64] | None = None
     for scan in reversed(scans):
@@ -183,16 +183,18 @@ def _views(parameters: Parameters, scans: Sequence[Scan], sensor_on_base: Pose) 
         if moved is not None and np.hypot(moved[0], moved[1]) < distance and abs(moved[2]) < angle:
             continue
         newer = pose
-        views.insert(0, _placed(scan, _pose(pose)))
+        views.insert(0, _placed(scan, _pose(pose), sensor_on_base if compensates else None))
         if len(views) == count:
             break
     return views
 
 
-def _placed(scan: Scan, pose: Pose) -> PlacedScan:
-    return PlacedScan(
-        scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, pose
-    )
+def _placed(scan: Scan, pose: Pose, mount: Pose | None) -> PlacedScan:
+    """``mount`` is T_base_sensor, or None where the beams count as measured at once."""
+    placement = Placement(scan.odometry, scan.sweep if mount else None)
+    time_, angle_min, angle_increment, range_min, range_max, ranges, *_ = scan.arguments
+    sweep = placement.of_child(mount).sweep if mount else None
+    return PlacedScan(time_, angle_min, angle_increment, range_min, range_max, ranges, pose, sweep)
 
 
 def _pose(pose: NDArray[np.float64]) -> Pose:

@@ -93,6 +93,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
     parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
+    parser.add_argument(
+        "--imu-topic", metavar="TOPIC", help="a bag's IMU: its gyro takes the place of odometry's turns"
+    )
     parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>-localized)")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
@@ -103,7 +106,12 @@ def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
     map_ = load_map(args.map)
     recording = open_recording(
-        args.input, scan_topic=args.scan_topic, odom_frame=args.odom_frame, max_range=args.max_range
+        args.input,
+        scan_topic=args.scan_topic,
+        odom_frame=args.odom_frame,
+        imu_topic=args.imu_topic,
+        max_range=args.max_range,
+        parameters=parameters,
     )
     start: Pose | None = None
     if args.start == "pose":

@@ -76,13 +76,14 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
         session.start()
     for scan in _progress(_until(recording.scans(), options.until), recording, options.quiet):
         result = None
-        if schedule.maps(scan):
+        mapped = schedule.take(scan)
+        if mapped is not None:
             started = time.perf_counter()
-            result = session.add_scan(scan)
+            result = session.add_scan(mapped)
             watch.scan_seconds.append(time.perf_counter() - started)
             if result is not None and result.status:
                 scan_hits.append(result.hit_fraction)
-        recorder.add(scan.stamp, scan.odometry, result)
+        recorder.add(scan.stamp, (mapped or scan).odometry, result)
         times.append(scan.time)
     if not times:
         raise InputError(f"{recording.name}: no scan to map")
@@ -172,6 +173,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
     parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
+    parser.add_argument(
+        "--imu-topic", metavar="TOPIC", help="a bag's IMU: its gyro takes the place of odometry's turns"
+    )
     parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>)")
     parser.add_argument("--map", metavar="BASE", help="base path of the saved map (default: DIR/map)")
@@ -196,7 +200,12 @@ def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
     events = read_events(args.events) if args.events else []
     recording = open_recording(
-        args.input, scan_topic=args.scan_topic, odom_frame=args.odom_frame, max_range=args.max_range
+        args.input,
+        scan_topic=args.scan_topic,
+        odom_frame=args.odom_frame,
+        imu_topic=args.imu_topic,
+        max_range=args.max_range,
+        parameters=parameters,
     )
     resume = None
     if args.resume:

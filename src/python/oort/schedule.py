@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from oort.errors import InputError
-from oort.events import SCAN, Event
+from oort.events import SCAN, Event, scan_of_entry
 from oort.recording import Scan
 
 MakeCall = Callable[[int, Event], None]
@@ -19,8 +19,8 @@ MakeCall = Callable[[int, Event], None]
 class Schedule(Protocol):
     """Asked before each scan of a recording."""
 
-    def maps(self, scan: Scan) -> bool:
-        """Makes the calls that come before a scan; whether the scan is to be mapped."""
+    def take(self, scan: Scan) -> Scan | None:
+        """Makes the calls that come before a scan; the scan as it is to be mapped, None if it is not."""
 
     def finish(self, until: float) -> None:
         """Makes the remaining calls, up to a time [s]."""
@@ -42,10 +42,10 @@ class TimedSchedule:
         """Sorts by time."""
         self._waiting = deque(sorted(enumerate(self.events), key=lambda entry: entry[1].t))
 
-    def maps(self, scan: Scan) -> bool:
+    def take(self, scan: Scan) -> Scan | None:
         """See Schedule."""
         self.finish(scan.time)
-        return True
+        return scan
 
     def finish(self, until: float) -> None:
         """See Schedule."""
@@ -61,13 +61,14 @@ class LoggedSchedule:
     make: MakeCall
     _next: int = 0
 
-    def maps(self, scan: Scan) -> bool:
+    def take(self, scan: Scan) -> Scan | None:
         """See Schedule."""
         self._make_calls()
-        if self._next == len(self.events) or self.events[self._next].args[:1] != [scan.stamp]:
-            return False
-        self._next += 1
-        return True
+        if self._next == len(self.events):
+            return None
+        logged = scan_of_entry(scan, self.events[self._next].args)
+        self._next += logged is not None
+        return logged
 
     def finish(self, until: float) -> None:
         """See Schedule. Raises InputError if the log lists scans that the recording has not had."""

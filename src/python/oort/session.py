@@ -130,9 +130,7 @@ class Session:
         """Takes one scan with its odometry; None if the state is not mapping."""
         if self._state is not State.MAPPING:
             return None
-        result = self._mapper.add_scan(
-            scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, scan.odometry
-        )
+        result = self._mapper.add_scan(*scan.arguments)
         if self._locations.settle():
             self._write(Saved.METADATA)
         return result

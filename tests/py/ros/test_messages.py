@@ -25,6 +25,7 @@ from sensor_msgs.msg import LaserScan
 from oort import Mapper, Parameters, render_map
 from oort.errors import InputError
 from oort.recording import Scan, open_recording
+from oort.recording.motion import Placement
 from oort.ros import messages
 from recording_files import Bag, roll_yaw_quaternion
 
@@ -166,7 +167,7 @@ def test_a_live_scan_is_the_scan_of_the_bag(tmp_path: Path, upside_down: bool) -
         raw = [data for connection, _, data in reader.messages() if connection.topic == "/scan"]
     assert len(raw) == len(from_bag) == 3
     for data, expected in zip(raw, from_bag, strict=True):
-        live = messages.to_scan(LaserScan().deserialize(data), expected.odometry, upside_down)
+        live = messages.to_scan(LaserScan().deserialize(data), Placement(expected.odometry), upside_down)
         assert _bits(live) == _bits(expected)
         assert (live.angle_min, live.angle_increment) == (-0.5, 0.25) or upside_down
 

@@ -23,6 +23,7 @@ from std_msgs.msg import Int64
 from oort import read_parameters
 from oort.poses import compose
 from oort.recording.laser_scan import scan_from_message
+from oort.recording.motion import Placement
 from oort.ros.messages import rotation, yaw
 from oort.session import Session
 from ros.client import Client, Heard, figures, until
@@ -69,7 +70,7 @@ def map_of(course: Course, stamps: Sequence[rospy.Time], base: Path) -> Path:
             range_min=float(np.float32(course.range_min)),
             range_max=float(np.float32(course.range_max)),
             ranges=ranges,
-            odometry=(x, y, yaw(rotation(theta))),
+            placement=Placement((x, y, yaw(rotation(theta)))),
             upside_down=False,
         )
         session.add_scan(scan)

@@ -14,6 +14,7 @@ from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from oort import Parameters
 from oort.live import UnusableScanError
 from oort.recording import Pose
+from oort.recording.motion import SNAPSHOT
 from oort.ros.messages import transform
 from oort.ros.transforms import Mount, Transforms
 
@@ -44,7 +45,8 @@ def laser(roll: float = 0.0, pitch: float = 0.0) -> TransformStamped:
 
 
 def lookup(transforms: Transforms, stamp: float) -> Pose | None:
-    return transforms.odometry(stamp, time.monotonic())
+    placement = transforms.place(stamp, time.monotonic(), SNAPSHOT)
+    return None if placement is None else placement.odometry
 
 
 # ---- the laser ----
@@ -119,8 +121,8 @@ def test_odometry_that_will_not_come(transforms: Transforms) -> None:
         transforms.set_transform(odometry(100.0 + step, (0.1 * step, 0.0, 0.0)), "robot")
     for stamp in (99.9, 105.0):  # 20 s are kept
         with pytest.raises(UnusableScanError, match="older than the odometry"):
-            transforms.odometry(stamp, arrived)
-    assert transforms.odometry(110.0, arrived) == pytest.approx((1.0, 0.0, 0.0))
+            transforms.place(stamp, arrived, SNAPSHOT)
+    assert lookup(transforms, 110.0) == pytest.approx((1.0, 0.0, 0.0))
     assert lookup(transforms, 99.9) is None, "it came later than the odometry: the clock may have been set back"
 
 
@@ -131,7 +133,7 @@ def test_a_clock_that_is_set_back(transforms: Transforms) -> None:
     transforms.set_transform(odometry(51.0, (1.0, 0.0, 0.0)), "robot")
     assert lookup(transforms, 50.5) == pytest.approx((0.5, 0.0, 0.0))
     with pytest.raises(UnusableScanError, match="before the clock was set back"):
-        transforms.odometry(100.1, arrived)
+        transforms.place(100.1, arrived, SNAPSHOT)
 
 
 def test_what_is_no_pose_is_left_out(transforms: Transforms, told: list[None]) -> None:

@@ -39,6 +39,8 @@ class ScanItem:
     resolve: Resolve
     arrived: float
     """[s] time.monotonic()"""
+    last_resort: Resolve
+    """makes the scan of what is known, when the patience is over"""
     scan: Scan | None = None
     refused: str = ""
     """the kind of reason why it cannot be mapped"""
@@ -47,9 +49,17 @@ class ScanItem:
 
     def try_to_resolve(self) -> bool:
         """Whether it is known by now what becomes of the scan."""
+        return self._try(self.resolve)
+
+    def give_up(self) -> None:
+        """Nothing more will come."""
+        if not self._try(self.last_resort):
+            self.refuse("no odometry at its stamp")
+
+    def _try(self, resolve: Resolve) -> bool:
         if self.scan is None and not self.refused:
             try:
-                self.scan = self.resolve()
+                self.scan = resolve()
             except UnusableScanError as error:
                 self.refuse(str(error))
             except Exception as error:  # whatever is wrong with one scan, the others go on
@@ -96,9 +106,9 @@ class Inbox:
         """Scans and calls that wait, with the one that is being worked on."""
         return len(self._items)
 
-    def add_scan(self, resolve: Resolve) -> None:
-        """Adds a scan at the end."""
-        item = ScanItem(resolve, time.monotonic())
+    def add_scan(self, resolve: Resolve, last_resort: Resolve | None = None) -> None:
+        """Adds a scan at the end; ``last_resort`` is asked for it when it has waited for too long."""
+        item = ScanItem(resolve, time.monotonic(), last_resort or resolve)
         with self._changed:
             if self._closed is not None:
                 return
@@ -178,5 +188,5 @@ class Inbox:
         if self._calls:
             deadline = min(deadline, max(item.arrived, self._calls[0].arrived) + PATIENCE_BEFORE_CALL)
         if now >= deadline:
-            item.refuse("no odometry at its stamp")
-        return bool(item.refused)
+            item.give_up()
+        return item.scan is not None or bool(item.refused)

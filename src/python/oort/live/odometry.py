@@ -4,10 +4,13 @@
 
 import math
 import time
+from dataclasses import replace
 
-from oort._core import OdometryBuffer
+from oort._core import GyroOdometry, OdometryBuffer
 from oort.live.inbox import UnusableScanError
+from oort.poses import between, compose
 from oort.recording import Pose
+from oort.recording.motion import SNAPSHOT, Placement, place
 
 _KEPT = 20.0  # [s] of odometry; scans that come later than that are lost
 _BACKWARDS = 1.0  # [s]; a pose or scan that is older than the last one by more says that the clock was set back
@@ -17,9 +20,12 @@ _AHEAD = 1.0  # [s]; scans are no more than a message's delay ahead of odometry 
 class Odometry:
     """The poses of one frame in odometry's, since the clock was set back last. Not thread-safe."""
 
-    def __init__(self) -> None:
-        """Nothing came so far."""
-        self._buffer = OdometryBuffer(_KEPT)
+    def __init__(self, *, max_extrapolation: float = 0.0, use_gyro: bool = False) -> None:
+        """Nothing came so far. ``max_extrapolation`` [s] and ``use_gyro`` are the parameters of that name."""
+        self._max_extrapolation = max_extrapolation
+        self._gyro = GyroOdometry() if use_gyro else None
+        self._buffer = OdometryBuffer(_KEPT)  # as it is reported
+        self._turned = OdometryBuffer(_KEPT) if use_gyro else self._buffer  # with the gyro's turns
         self._oldest, self._newest = math.inf, -math.inf  # stamps that it covers [s]
         self._last_scan = self._asked_for = -math.inf  # stamps: of the last scan with a pose, and of the last one [s]
         self._arrived = self._set_back_at = self._last_scan_arrived = -math.inf  # by time.monotonic() [s]
@@ -30,12 +36,49 @@ class Odometry:
         set_back = stamp < self._newest - _BACKWARDS
         if set_back:
             self._buffer = OdometryBuffer(_KEPT)
+            self._turned = OdometryBuffer(_KEPT) if self._gyro else self._buffer
+            self._gyro = GyroOdometry() if self._gyro else None
             self._oldest, self._newest = math.inf, -math.inf
             self._set_back_at = self._arrived
         self._buffer.add(stamp, *pose)
+        if self._gyro is not None:
+            self._gyro.add_odometry(stamp, *pose)
+            self._take_turned(self._gyro)
         self._newest = max(self._newest, stamp)
         self._oldest = max(min(self._oldest, stamp), self._newest - _KEPT)
         return set_back
+
+    def add_gyro(self, stamp: float, yaw_rate: float) -> None:
+        """Takes a yaw rate of the base [rad/s]."""
+        if self._gyro is not None:
+            self._gyro.add_gyro(stamp, yaw_rate)
+            self._take_turned(self._gyro)
+
+    def _take_turned(self, gyro: GyroOdometry) -> None:
+        for time_, x, y, theta in gyro.take():
+            self._turned.add(time_, x, y, theta)
+
+    def place(
+        self, stamp: float, arrived: float, span: tuple[float, float] = SNAPSHOT, last_resort: bool = False
+    ) -> Placement | None:
+        """The odometry of a scan, or None as long as it may still come; see `at` and beam_span.
+
+        ``last_resort``: no more odometry will come, so what little is missing is extrapolated.
+        """
+        ahead = self._max_extrapolation if last_resort else 0.0
+        if self.at(stamp, arrived) is None and not (last_resort and stamp > self._newest):
+            return None
+        if last_resort and self._gyro is not None:
+            self._gyro.flush()
+            self._take_turned(self._gyro)
+        placement = place(lambda time_: self._turned.lookup(time_, ahead), stamp, span)
+        if placement is None or self._gyro is None:
+            return placement and replace(placement, guessed=last_resort)
+        reported = self._buffer.lookup(stamp, ahead)
+        if reported is None:
+            return None
+        x, y, theta = compose(placement.odometry, between(reported, (0.0, 0.0, 0.0))).tolist()
+        return replace(placement, guessed=True, reported_frame=(x, y, theta))
 
     def at(self, stamp: float, arrived: float) -> Pose | None:
         """The pose at a scan's stamp [s], or None as long as it may still come.

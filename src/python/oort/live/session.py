@@ -11,7 +11,7 @@ from typing import Any
 
 from oort._core import Map, Parameters, Saved, ScanResult
 from oort.errors import StateError
-from oort.events import SCAN, EventLog
+from oort.events import SCAN, EventLog, scan_entry
 from oort.live.figures import Figures
 from oort.live.gallery import Gallery
 from oort.live.inbox import UNUSABLE, Answer, CallItem, Inbox, Resolve, ScanItem
@@ -63,6 +63,7 @@ class LiveSession:
         self._snapshot = Snapshot()
         self._mount: Pose | None = None  # not yet told to the session
         self._saves: list[Future[Saved]] = []  # of the call that is being made
+        self._reported_frame: Pose | None = None  # seen from the frame of the latest scan's odometry
         self._last_scan_time = -math.inf
         self._closing = False
         self._worker = threading.Thread(target=self._work, name="oort-map", daemon=True)
@@ -81,10 +82,10 @@ class LiveSession:
         snapshot = self._snapshot
         return snapshot.num_nodes > 0 and (snapshot.state is State.NOT_MAPPING or self.gallery.drawing is not None)
 
-    def add_scan(self, resolve: Resolve) -> None:
-        """Queues a scan; ``resolve`` makes it once its odometry is known."""
+    def add_scan(self, resolve: Resolve, last_resort: Resolve | None = None) -> None:
+        """Queues a scan; ``resolve`` makes it once its odometry is known, ``last_resort`` when none comes any more."""
         self.figures.arrived()
-        self.inbox.add_scan(resolve)
+        self.inbox.add_scan(resolve, last_resort)
 
     def mount_sensor(self, sensor_on_base: Pose) -> None:
         """Says where the sensor sits on the base (T_base_sensor), before the first scan can be resolved."""
@@ -166,12 +167,13 @@ class LiveSession:
             self._interrupt(self._last_scan_time - scan.time)
         self._last_scan_time = scan.time
         result = self._session.add_scan(scan)
-        self._log(scan.time, SCAN, [scan.stamp])
+        self._reported_frame = scan.reported_frame
+        self._log(scan.time, SCAN, scan_entry(scan))
         if result is not None and result.outcome == "node":
             self.keeper.changed()
-            self._snapshot = look_at(self._session, self._snapshot, map_changed=True)
+            self._snapshot = look_at(self._session, self._snapshot, self._reported_frame, map_changed=True)
         else:
-            self._snapshot = glance(self._session, self._snapshot)
+            self._snapshot = glance(self._session, self._snapshot, self._reported_frame)
         return result
 
     def _interrupt(self, seconds: float) -> None:
@@ -200,7 +202,7 @@ class LiveSession:
             self.keeper.settle(self._session)
         self._saves = []
         result = None if name == _REDRAW else self._call(name, args)
-        self._snapshot = look_at(self._session, before, map_changed=name in _CHANGE_MAP)
+        self._snapshot = look_at(self._session, before, self._reported_frame, map_changed=name in _CHANGE_MAP)
         saves, self._saves = self._saves, []
         self._follow_up(name, result, before)
         self._listener.call_made(self._snapshot)

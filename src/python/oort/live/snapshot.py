@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from oort._core import Map, OccupancyGrid
 from oort.locations import Pose
+from oort.poses import compose
 from oort.session import Session, State
 
 
@@ -41,22 +42,30 @@ class Drawing:
     map: Map
 
 
-def glance(session: Session, before: Snapshot) -> Snapshot:
-    """The session now, where neither map nor places can differ from ``before``."""
+def glance(session: Session, before: Snapshot, reported_frame: Pose | None = None) -> Snapshot:
+    """The session now, where neither map nor places can differ from ``before``; ``reported_frame`` is the scan's."""
     odom_pose = before.odom_pose
     if session.state is State.NOT_MAPPING:
         odom_pose = None
     elif session.state is State.MAPPING and session.mapper.has_pose:
-        odom_pose = session.mapper.odom_pose
+        odom_pose = odom_pose_of(session.mapper.odom_pose, reported_frame)
     return replace(before, state=session.state, path=session.path, odom_pose=odom_pose)
 
 
-def look_at(session: Session, before: Snapshot, map_changed: bool) -> Snapshot:
+def odom_pose_of(T_map_odom: Pose, reported_frame: Pose | None) -> Pose:  # noqa: N803
+    """Where the frame that odometry is reported in is on the map, from that of the latest scan's odometry."""
+    if reported_frame is None:
+        return T_map_odom
+    x, y, theta = compose(T_map_odom, reported_frame).tolist()
+    return x, y, theta
+
+
+def look_at(session: Session, before: Snapshot, reported_frame: Pose | None, map_changed: bool) -> Snapshot:
     """The session now; ``map_changed``: whether its map may differ from ``before``."""
     mapper = session.mapper
     locations = ((space, id, mapper.locate(space, id)) for space, id, *_ in mapper.locations)
     return replace(
-        glance(session, before),
+        glance(session, before, reported_frame),
         revision=before.revision + map_changed,
         num_nodes=mapper.num_nodes,
         places={(space, id): pose for space, id, pose in locations if pose is not None},

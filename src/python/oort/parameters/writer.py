@@ -15,16 +15,18 @@ _HEADER = """<!-- SPDX-FileCopyrightText: 2026 The Oort authors -->
 # Parameters
 
 `params/params.json` holds the defaults, `params/kuri_original.json` the documented values, and
-`params/cartographer.json` the defaults with Cartographer's matchers chosen ([matchers.md](matchers.md)). A file of your
-own needs only the keys that differ from the defaults. It may be strict JSON, or have comments (`#`, `//`), a comma too
-few between members or one after the last. A key given twice is a warning and the last one counts; an unknown key, a
-value of the wrong type or out of its range is an error that names the file, the line and the key.
+`params/cartographer.json` the defaults with Cartographer's matchers ([matchers.md](matchers.md)) and the time of its
+motion filter. A file of your own needs only the keys that differ from the defaults. It may be strict JSON, or have
+comments (`#`, `//`), a comma too few between members or one after the last. A key given twice is a warning and the last
+one counts; an unknown key, a value of the wrong type or out of its range is an error that names the file, the line and
+the key.
 
 A dot stands for a section: `output_map.robot_radius` is `{"output_map": {"robot_radius": 0.15}}`.
 """
-_CARTOGRAPHER = {
+_CARTOGRAPHER: dict[str, bool | int | float | str] = {
     "incremental_graph_builder.scanmatcher": "cartographer_matcher",
     "loop_closure_graph_builder.scanmatcher": "branch_and_bound_matcher",
+    "time_update": 5.0,
 }
 """What params/cartographer.json chooses."""
 

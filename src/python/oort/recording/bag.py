@@ -11,14 +11,18 @@ from typing import Any
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
+from oort._core import Parameters
 from oort.errors import InputError, OortError
 from oort.recording.frames import FrameTree
+from oort.recording.gyro import GyroRecord
 from oort.recording.laser_scan import scan_from_message, seconds
+from oort.recording.motion import SNAPSHOT, Placement, beam_span
 from oort.recording.rig import Rig, Survey, assemble
-from oort.recording.types import Pose, Recording, Scan
+from oort.recording.types import Recording, Scan
 
 _SCAN = "sensor_msgs/msg/LaserScan"
 _ODOMETRY = "nav_msgs/msg/Odometry"
+_IMU = "sensor_msgs/msg/Imu"
 _TF = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 
 
@@ -29,7 +33,9 @@ def read_bag(
     kind: str,
     scan_topic: str | None,
     odom_frame: str | None,
+    imu_topic: str | None,
     max_range: float | None,
+    parameters: Parameters,
 ) -> Recording:
     """Looks through a bag; its scans are read again when they are asked for.
 
@@ -39,12 +45,17 @@ def read_bag(
     for database in sorted(path.glob("*.db3")) if path.is_dir() else [path]:
         _check_database_size(database)
     with _opened(path) as reader:
-        survey = _survey(reader, _choose_scan_topic(path, reader, scan_topic))
+        topic = _choose(path, reader, _SCAN, scan_topic, "laser scans", "scan_topic (--scan-topic)")
+        imu = ""
+        if imu_topic is not None or parameters.get("use_imu"):
+            imu = _choose(path, reader, _IMU, imu_topic, "IMU messages", "imu_topic (--imu-topic)")
+        survey = _survey(reader, topic, imu, bool(parameters.get("motion_compensation")))
     try:
-        rig = assemble(survey, odom_frame)
+        rig = assemble(survey, odom_frame, parameters)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    usable = [rig.odometry.lookup(time) is not None for time in survey.scan_times]
+    scans = zip(survey.scan_times, survey.scan_spans, strict=True)
+    usable = [rig.place(time, span) is not None for time, span in scans]
     if not any(usable):
         raise InputError(f"{path}: {_why_unusable(survey)}")
     limit = math.inf if max_range is None else max_range
@@ -54,7 +65,7 @@ def read_bag(
         sensor_on_base=rig.sensor_on_base,
         num_scans=sum(usable),
         notes=(*rig.notes, *_skip_notes(survey, usable)),
-        source=lambda: _scans(path, survey.scan_topic, rig, limit),
+        source=lambda: _scans(path, survey, rig, limit),
     )
 
 
@@ -86,26 +97,27 @@ def _opened(path: Path) -> Iterator[AnyReader]:
         ) from error
 
 
-def _choose_scan_topic(path: Path, reader: AnyReader, wanted: str | None) -> str:
-    topics = sorted({connection.topic for connection in reader.connections if connection.msgtype == _SCAN})
+def _choose(path: Path, reader: AnyReader, kind: str, wanted: str | None, what: str, option: str) -> str:
+    """The topic with messages of a kind. Raises InputError if it is missing or there are several."""
+    topics = sorted({connection.topic for connection in reader.connections if connection.msgtype == kind})
     if wanted is not None:
         for topic in topics:
             if topic.strip("/") == wanted.strip("/"):
                 return topic
-        raise InputError(f"{path}: no laser scans on {wanted}; there are scans on: {', '.join(topics) or 'no topic'}")
+        others = f"there are {what.split()[-1]} on: {', '.join(topics) or 'no topic'}"
+        raise InputError(f"{path}: no {what} on {wanted}; {others}")
     if not topics:
         others = sorted({f"{connection.topic} ({connection.msgtype})" for connection in reader.connections})
-        raise InputError(f"{path}: no topic of type {_SCAN}; the bag has: {', '.join(others[:20]) or 'nothing'}")
+        raise InputError(f"{path}: no topic of type {kind}; the bag has: {', '.join(others[:20]) or 'nothing'}")
     if len(topics) > 1:
-        raise InputError(
-            f"{path}: several topics with laser scans; choose one with scan_topic (--scan-topic): {', '.join(topics)}"
-        )
+        raise InputError(f"{path}: several topics with {what}; choose one with {option}: {', '.join(topics)}")
     return topics[0]
 
 
-def _survey(reader: AnyReader, scan_topic: str) -> Survey:
+def _survey(reader: AnyReader, scan_topic: str, imu_topic: str, compensates: bool) -> Survey:
     survey = Survey(scan_topic)
-    wanted = [c for c in reader.connections if c.topic == scan_topic or c.msgtype in (_ODOMETRY, *_TF)]
+    survey.gyro = GyroRecord(imu_topic) if imu_topic else None
+    wanted = [c for c in reader.connections if c.topic in (scan_topic, imu_topic) or c.msgtype in (_ODOMETRY, *_TF)]
     count = 0
     for connection, _, raw in reader.messages(wanted):
         count += 1
@@ -114,8 +126,13 @@ def _survey(reader: AnyReader, scan_topic: str) -> Survey:
             survey.scan_frames[_frame(message.header.frame_id)] = None
             if len(message.ranges):
                 survey.scan_times.append(_seconds(message.header.stamp))
+                span = beam_span(len(message.ranges), message.time_increment) if compensates else SNAPSHOT
+                survey.scan_spans.append(span or SNAPSHOT)
+                survey.impossible_spans += span is None
             else:
                 survey.empty_scans += 1
+        elif survey.gyro is not None and connection.topic == imu_topic:
+            survey.gyro.add(_frame(message.header.frame_id), _seconds(message.header.stamp), message)
         elif connection.msgtype == _ODOMETRY:
             frames = (_frame(message.header.frame_id), _frame(message.child_frame_id))
             tree = survey.odometry.setdefault((connection.topic, *frames), FrameTree())
@@ -168,18 +185,21 @@ def _skip_notes(survey: Survey, usable: list[bool]) -> list[str]:
     return [f"scans skipped, {why}: {count}" for why, count in skipped.items() if count]
 
 
-def _scans(path: Path, topic: str, rig: Rig, max_range: float) -> Iterator[Scan]:
+def _scans(path: Path, survey: Survey, rig: Rig, max_range: float) -> Iterator[Scan]:
     """The second pass: the usable scans in the order of the recording."""
+    spans = iter(survey.scan_spans)
     with _opened(path) as reader:
-        wanted = [connection for connection in reader.connections if connection.topic == topic]
+        wanted = [connection for connection in reader.connections if connection.topic == survey.scan_topic]
         for connection, _, raw in reader.messages(wanted):
             message: Any = reader.deserialize(raw, connection.msgtype)
-            odometry = rig.odometry.lookup(_seconds(message.header.stamp))
-            if odometry is not None and len(message.ranges):
-                yield _to_scan(message, odometry, rig.upside_down, max_range)
+            if not len(message.ranges):
+                continue
+            placement = rig.place(_seconds(message.header.stamp), next(spans))
+            if placement is not None:
+                yield _to_scan(message, placement, rig.upside_down, max_range)
 
 
-def _to_scan(message: Any, odometry: Pose, upside_down: bool, max_range: float) -> Scan:
+def _to_scan(message: Any, placement: Placement, upside_down: bool, max_range: float) -> Scan:
     return scan_from_message(
         whole_seconds=message.header.stamp.sec,
         nanoseconds=message.header.stamp.nanosec,
@@ -188,6 +208,6 @@ def _to_scan(message: Any, odometry: Pose, upside_down: bool, max_range: float) 
         range_min=message.range_min,
         range_max=min(float(message.range_max), max_range),
         ranges=message.ranges,
-        odometry=odometry,
+        placement=placement,
         upside_down=upside_down,
     )

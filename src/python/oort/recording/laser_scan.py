@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from oort.recording.types import Pose, Scan
+from oort.recording.motion import Placement
+from oort.recording.types import Scan
 
 
 def seconds(whole: int, nanoseconds: int) -> float:
@@ -24,19 +25,21 @@ def scan_from_message(
     range_min: float,
     range_max: float,
     ranges: Sequence[float] | NDArray[np.float32],
-    odometry: Pose,
+    placement: Placement,
     upside_down: bool,
 ) -> Scan:
-    """A Scan of what a LaserScan says in its own frame; `odometry` is T_odom_base at the stamp.
+    """A Scan of what a LaserScan says in its own frame; `placement` is its odometry.
 
     `upside_down` is for a laser whose z axis points down: its beams are put in the order in which they turn
     counter-clockwise on the base.
     """
+    sweep = placement.sweep
     values = np.array(ranges, dtype=np.float32)
     angle_min, angle_increment = float(angle_min), float(angle_increment)
     if upside_down:  # mirrored, beam i points where bearing -(angle_min + i * increment) is
         angle_min = -(angle_min + (len(values) - 1) * angle_increment)
         values = values[::-1].copy()
+        sweep = None if sweep is None else (sweep[1], sweep[0])
     return Scan(
         time=seconds(whole_seconds, nanoseconds),
         stamp=f"{whole_seconds}.{nanoseconds:09d}",
@@ -45,5 +48,8 @@ def scan_from_message(
         range_min=float(range_min),
         range_max=float(range_max),
         ranges=values,
-        odometry=odometry,
+        odometry=placement.odometry,
+        sweep=sweep,
+        reported_frame=placement.reported_frame,
+        guessed=placement.guessed,
     )

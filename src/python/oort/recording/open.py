@@ -6,6 +6,7 @@ import math
 import os
 from pathlib import Path
 
+from oort._core import Parameters
 from oort.errors import InputError, ParameterError
 from oort.recording.bag import read_bag
 from oort.recording.carmen import read_carmen
@@ -32,14 +33,20 @@ def open_recording(
     *,
     scan_topic: str | None = None,
     odom_frame: str | None = None,
+    imu_topic: str | None = None,
     max_range: float | None = None,
+    parameters: Parameters | None = None,
 ) -> Recording:
     """Opens a recording and looks through all of it once.
 
     `scan_topic` chooses among several laser scans: a bag's topic, or a CARMEN log's message (FLASER, ROBOTLASER1).
-    `odom_frame` names a bag's odometry frame where it is not called "odom". Readings at or beyond `max_range` [m] are
-    no return. Raises InputError if the recording is missing, damaged, cut short, ambiguous, or without scans or
-    odometry, and ParameterError if `max_range` is not a positive number.
+    `odom_frame` names a bag's odometry frame where it is not called "odom", and `imu_topic` the IMU whose gyro takes
+    the place of its turns. Of `parameters` (default: Parameters()) those count that say what is made of odometry:
+    use_imu, which takes the bag's only IMU, motion_compensation and max_extrapolation. Readings at or beyond
+    `max_range` [m] are no return.
+
+    Raises InputError if the recording is missing, damaged, cut short, ambiguous, or without scans or odometry, and
+    ParameterError if `max_range` is not a positive number.
     """
     path = Path(path)
     if max_range is not None and not (math.isfinite(max_range) and max_range > 0.0):
@@ -48,6 +55,8 @@ def open_recording(
     if bag_kind is None:
         if odom_frame is not None:
             raise ParameterError(f"{path} is a CARMEN log: it has no frames, so leave out odom_frame")
+        if imu_topic is not None:
+            raise ParameterError(f"{path} is a CARMEN log: it has no IMU, so leave out imu_topic")
         return read_carmen(path, name=recording_name(path), message=scan_topic, max_range=max_range)
     return read_bag(
         path,
@@ -55,7 +64,9 @@ def open_recording(
         kind=bag_kind,
         scan_topic=scan_topic,
         odom_frame=odom_frame,
+        imu_topic=imu_topic,
         max_range=max_range,
+        parameters=parameters or Parameters(),
     )
 
 

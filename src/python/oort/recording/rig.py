@@ -6,9 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from oort._core import OdometryBuffer
+from oort._core import OdometryBuffer, Parameters
 from oort.errors import InputError
 from oort.recording.frames import FrameTree, Link, to_plane
+from oort.recording.gyro import GyroRecord, turned_by_gyro
+from oort.recording.motion import Placement, place
 from oort.recording.types import Pose
 
 _GAP = 1.0  # [s]; a longer silence of the odometry is worth a note
@@ -25,7 +27,13 @@ class Survey:
     scan_frames: dict[str, None] = field(default_factory=dict)
     scan_times: list[float] = field(default_factory=list)
     """of the scans that have readings"""
+    scan_spans: list[tuple[float, float]] = field(default_factory=list)
+    """of the same: when their first and last beams were measured, from their stamps [s]"""
+    impossible_spans: int = 0
+    """scans whose time_increment cannot be"""
     empty_scans: int = 0
+    gyro: GyroRecord | None = None
+    """None unless it is to be used"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +43,16 @@ class Rig:
     sensor_on_base: Pose
     upside_down: bool
     odometry: OdometryBuffer
+    max_extrapolation: float
+    """[s]"""
     notes: tuple[str, ...]
 
+    def place(self, stamp: float, span: tuple[float, float]) -> Placement | None:
+        """The odometry of a scan; None outside the time that it covers."""
+        return place(lambda time: self.odometry.lookup(time, self.max_extrapolation), stamp, span)
 
-def assemble(survey: Survey, odom_frame: str | None) -> Rig:
+
+def assemble(survey: Survey, odom_frame: str | None, parameters: Parameters) -> Rig:
     """Finds the frames and puts odometry and mount together. `odom_frame` is None for a frame called "odom".
 
     Raises InputError, without the bag's name, if something is missing, ambiguous or not as a planar laser needs it.
@@ -60,14 +74,23 @@ def assemble(survey: Survey, odom_frame: str | None) -> Rig:
     sensor_on_base, upside_down = to_plane(survey.tf.mount(base, sensor), sensor)
     if upside_down:
         notes.append("the laser hangs upside down: its beams were turned round")
+    if survey.impossible_spans:
+        notes.append(
+            f"{survey.impossible_spans} scans have a time_increment that is no number or makes them last longer than "
+            "1 s: their beams are taken as measured at once"
+        )
     buffer = OdometryBuffer()
     samples = link.by_time()
-    for time, x, y, theta in samples.tolist():
+    poses = samples.tolist()
+    if survey.gyro is not None:
+        poses, told = turned_by_gyro(survey.gyro, survey.tf, base, link)
+        notes += told
+    for time, x, y, theta in poses:
         buffer.add(time, x, y, theta)
     gap = float(np.diff(samples[:, 0]).max(initial=0.0))
     if gap > _GAP:
         notes.append(f"the odometry is silent for up to {gap:.1f} s; poses in between are interpolated")
-    return Rig(sensor_on_base, upside_down, buffer, tuple(notes))
+    return Rig(sensor_on_base, upside_down, buffer, float(parameters.get("max_extrapolation")), tuple(notes))
 
 
 def _find_odometry(survey: Survey, sensor: str, wanted: str | None) -> tuple[str, str, Link, str]:

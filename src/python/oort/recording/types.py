@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 Pose = tuple[float, float, float]
 """x [m], y [m], theta [rad]."""
 
+Sweep = tuple[Pose, Pose]
+"""Where the base was at a scan's first and at its last beam, seen from where it was at the stamp."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scan:
@@ -32,6 +35,18 @@ class Scan:
     """(n,) [m]; may hold nan and inf, which are no return"""
     odometry: Pose
     """T_odom_base at the stamp"""
+    sweep: Sweep | None = None
+    """None: all beams were measured at once"""
+    reported_frame: Pose | None = None
+    """where the frame is that odometry is reported in, seen from the one of ``odometry``; None: they are the same"""
+    guessed: bool = False
+    """whether the odometry rests on what was known at some moment, so that a later look might tell something else"""
+
+    @property
+    def arguments(self) -> tuple[float, float, float, float, float, NDArray[np.float32], Pose, Sweep | None]:
+        """What Mapper.add_scan and Localizer.add_scan take."""
+        limits = self.angle_min, self.angle_increment, self.range_min, self.range_max
+        return (self.time, *limits, self.ranges, self.odometry, self.sweep)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -45,7 +45,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
-    recording = open_recording(args.bag, scan_topic=args.scan_topic)
+    recording = open_recording(args.bag, scan_topic=args.scan_topic, parameters=parameters)
     resume = None
     if args.resume_map:
         pose, place = start_in(args.resume_map)

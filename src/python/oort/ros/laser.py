@@ -3,43 +3,65 @@
 """The messages of one laser as scans with odometry, once the transforms that they need have come."""
 
 from collections.abc import Callable
+from functools import partial
 
+import rospy
 from sensor_msgs.msg import LaserScan
 
 from oort.live import UnusableScanError
 from oort.live.inbox import Resolve
 from oort.recording import Pose, Scan
 from oort.recording.laser_scan import seconds
+from oort.recording.motion import SNAPSHOT, beam_span
 from oort.ros.messages import to_scan
 from oort.ros.transforms import Transforms
+
+_COMPLAIN = 10.0  # [s] between two warnings
 
 
 class Laser:
     """Takes the scans of the laser whose scan can be used first, and refuses those of others."""
 
-    def __init__(self, transforms: Transforms, found: Callable[[str, Pose], None]) -> None:
-        """``found`` is told of the laser: its frame and T_base_sensor, before its first scan."""
+    def __init__(self, transforms: Transforms, compensates_motion: bool, found: Callable[[str, Pose], None]) -> None:
+        """``found`` is told of the laser: its frame and T_base_sensor, before its first scan.
+
+        ``compensates_motion``: whether a scan waits for the odometry at its last beam, if it took time.
+        """
         self._transforms = transforms
+        self._compensates_motion = compensates_motion
         self._found = found
         self.frame = ""
         """its frame, once it is known"""
 
-    def resolve_later(self, message: LaserScan, sensor_frame: str, arrived: float) -> Resolve:
-        """What makes a scan of a message that arrived at a monotonic time [s], when it is its turn."""
-        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+    def resolve_later(self, message: LaserScan, sensor_frame: str, arrived: float) -> tuple[Resolve, Resolve]:
+        """What makes a scan of a message that arrived at a monotonic time [s], when it is its turn.
 
-        def resolve() -> Scan | None:
+        The second does so of what is known, when no more will come.
+        """
+        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+        span = self._span(message)
+
+        def resolve(last_resort: bool = False) -> Scan | None:
             if not message.ranges:
                 raise UnusableScanError("without readings")
             if self.frame and sensor_frame != self.frame:
                 raise UnusableScanError("in another laser's frame")
             mount = self._transforms.mount(sensor_frame)
-            odometry = None if mount is None else self._transforms.odometry(stamp, arrived)
-            if mount is None or odometry is None:
+            placement = None if mount is None else self._transforms.place(stamp, arrived, span, last_resort)
+            if mount is None or placement is None:
                 return None
             if not self.frame:
                 self._found(sensor_frame, mount.sensor_on_base)
                 self.frame = sensor_frame
-            return to_scan(message, odometry, mount.upside_down)
+            return to_scan(message, placement, mount.upside_down)
 
-        return resolve
+        return resolve, partial(resolve, last_resort=True)
+
+    def _span(self, message: LaserScan) -> tuple[float, float]:
+        span = beam_span(len(message.ranges), message.time_increment) if self._compensates_motion else SNAPSHOT
+        if span is None:
+            rospy.logwarn_throttle(
+                _COMPLAIN,
+                f"a time_increment of {message.time_increment} s cannot be: the beams are taken as measured at once",
+            )
+        return span or SNAPSHOT

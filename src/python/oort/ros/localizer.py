@@ -23,7 +23,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid
 from numpy.typing import NDArray
 from oort_msgs import srv
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import String
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
@@ -31,6 +31,7 @@ from oort._core import Map, Parameters, load_map, normalise_map_path, render_map
 from oort.errors import InputError, OortError, StateError
 from oort.export.files import write_atomically
 from oort.live.inbox import CallItem, Inbox, ScanItem
+from oort.live.snapshot import odom_pose_of
 from oort.localization import Localizer, ReferenceMap, start_covariance, start_pose
 from oort.poses import between, compose
 from oort.recording import Pose, Scan
@@ -66,6 +67,7 @@ class LocalizerNode:
         self._mount: Pose | None = None
         self._seed: tuple[Pose, NDArray[np.float64]] | None = None  # T_map_sensor, until the laser's mount is known
         self._localizer: Localizer | None = None
+        self._reported_frame: Pose | None = None  # seen from the frame of the latest scan's odometry
         self._load(base)
 
         self._maps = [rospy.Publisher(topic, OccupancyGrid, queue_size=1, latch=True) for topic in _MAPS]
@@ -75,11 +77,13 @@ class LocalizerNode:
         self._broadcaster = tf2_ros.TransformBroadcaster()
         self._inbox = Inbox()
         self._transforms = Transforms(parameters, self._inbox.poke)
-        self._laser = Laser(self._transforms, self._laser_found)
+        self._laser = Laser(self._transforms, bool(parameters.get("motion_compensation")), self._laser_found)
         self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
         self._begin(start)
         self._show_map()
         rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
+        if parameters.get("use_imu"):
+            rospy.Subscriber("imu", Imu, self._transforms.add_imu, tcp_nodelay=True)
         rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_initial_pose)
         self._worker = threading.Thread(target=self._work, name="oort-localize", daemon=True)
         self._worker.start()
@@ -148,7 +152,7 @@ class LocalizerNode:
 
     def _on_scan(self, message: LaserScan) -> None:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
-        self._inbox.add_scan(self._laser.resolve_later(message, sensor_frame, time.monotonic()))
+        self._inbox.add_scan(*self._laser.resolve_later(message, sensor_frame, time.monotonic()))
 
     def _laser_found(self, frame: str, mount: Pose) -> None:
         self._mount = mount
@@ -206,9 +210,8 @@ class LocalizerNode:
             self._localizer.start_at(*self._seed)
             self._seed = None
         localizer = self._localizer
-        localizer.add_scan(
-            scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, scan.odometry
-        )
+        localizer.add_scan(*scan.arguments)
+        self._reported_frame = scan.reported_frame
         self._tell(scan, mount)
 
     def _make(self, item: CallItem) -> None:
@@ -266,6 +269,7 @@ class LocalizerNode:
             if pose is None or stamp == self._last_tf or self._transforms.is_localised():
                 return
             self._last_tf = stamp
+            pose = odom_pose_of(pose, self._reported_frame)
             self._broadcaster.sendTransform(transform(self._map_frame, self._odom_frame, stamp, pose))
 
     def _repeat_tf(self) -> None:

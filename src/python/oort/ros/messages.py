@@ -19,6 +19,7 @@ from oort.errors import InputError
 from oort.recording import Pose, Scan
 from oort.recording.frames import heading, unit_quaternion
 from oort.recording.laser_scan import scan_from_message
+from oort.recording.motion import Placement
 
 
 class FastGrid(OccupancyGrid):  # type: ignore[misc]
@@ -93,8 +94,8 @@ def yaw(quaternion: Quaternion) -> float:
     return heading(*unit)
 
 
-def to_scan(message: LaserScan, odometry: Pose, upside_down: bool) -> Scan:
-    """A scan with T_odom_base at its stamp: the very bits that reading the message from a bag would give."""
+def to_scan(message: LaserScan, placement: Placement, upside_down: bool) -> Scan:
+    """A scan with its odometry: the very bits that reading the message from a bag would give."""
     return scan_from_message(
         whole_seconds=message.header.stamp.secs,
         nanoseconds=message.header.stamp.nsecs,
@@ -103,6 +104,6 @@ def to_scan(message: LaserScan, odometry: Pose, upside_down: bool) -> Scan:
         range_min=message.range_min,
         range_max=message.range_max,
         ranges=message.ranges,
-        odometry=odometry,
+        placement=placement,
         upside_down=upside_down,
     )

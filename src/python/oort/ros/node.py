@@ -11,7 +11,7 @@ import rospy
 import tf2_ros
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import Int64, String
 from visualization_msgs.msg import MarkerArray
 
@@ -53,7 +53,7 @@ class Node(Listener):
         self._broadcaster = tf2_ros.TransformBroadcaster()
 
         self._transforms = Transforms(parameters, self._poke)
-        self._laser = Laser(self._transforms, self._laser_found)
+        self._laser = Laser(self._transforms, bool(parameters.get("motion_compensation")), self._laser_found)
         self.live = LiveSession(
             parameters, self, clock=rospy.get_time, localiser=self._sensor_on_map, event_log=event_log
         )
@@ -61,6 +61,8 @@ class Node(Listener):
         self._services = Services(self.live, self._map_frame)
         self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
         self._scans = rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
+        if parameters.get("use_imu"):
+            rospy.Subscriber("imu", Imu, self._transforms.add_imu, tcp_nodelay=True)
         for period, work in (
             (_TF_PERIOD, self._tell_pose),
             (_QUEUE_PERIOD, self._tell_queue),
@@ -76,9 +78,9 @@ class Node(Listener):
     # ---- what comes in ----
 
     def _on_scan(self, message: LaserScan) -> None:
-        self.live.add_scan(self._resolve(message, time.monotonic()))
+        self.live.add_scan(*self._resolve(message, time.monotonic()))
 
-    def _resolve(self, message: LaserScan, arrived: float) -> Resolve:
+    def _resolve(self, message: LaserScan, arrived: float) -> tuple[Resolve, Resolve]:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
         if sensor_frame != self._sensor_frame and not self._laser.frame:
             rospy.logwarn_once(
@@ -155,6 +157,8 @@ class Node(Listener):
         missing = self._transforms.missing(self._sensor_frame)
         if waiting and since > _HEALTH_PERIOD:
             rospy.logwarn_throttle(_COMPLAIN, f"{missing}; {waiting} scans waiting")
+        if self._transforms.lacks_imu():
+            rospy.logwarn_throttle(_COMPLAIN, "no yaw rate on imu: odometry's own turns are used")
         health = look_over(self.live, self._scans.resolved_name, missing)
         self._diagnostics.publish(diagnostic_array(health, rospy.get_name(), rospy.Time.now()))
 

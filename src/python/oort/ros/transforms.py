@@ -12,15 +12,17 @@ from itertools import pairwise
 import rospy
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import Imu
 
 from oort._core import Parameters
 from oort.errors import InputError
 from oort.live import UnusableScanError
 from oort.live.odometry import Odometry
-from oort.poses import compose
 from oort.recording import Pose
 from oort.recording.frames import FrameTree, describe_variation, heading, to_plane, unit_quaternion
+from oort.recording.gyro import LEVEL, Vector, angular_velocity, upward, yaw_rate
 from oort.recording.laser_scan import seconds
+from oort.recording.motion import Placement
 from oort.ros.messages import yaw
 
 _FRESH = 1.0  # [s]; an older pose of a localiser is not where the robot is
@@ -48,6 +50,10 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         super().__init__(debug=False)
         self._base, self._odom, self._map = (frame(parameters, name) for name in ("base", "odom", "map"))
         self._on_odometry = on_odometry
+        self._max_extrapolation = float(parameters.get("max_extrapolation"))
+        self._use_imu = bool(parameters.get("use_imu"))
+        self._imu_axes: dict[str, Vector] = {}  # upward in the IMU's frame
+        self._imu_heard = -math.inf  # [s] time.monotonic()
         self._lock = threading.Lock()  # /tf and /tf_static have threads of their own
         self._tree = FrameTree()  # the first transform of each link
         self._odometry: dict[str, Odometry] = {}  # by the child of the odometry frame
@@ -89,19 +95,20 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         self._mounts[sensor_frame] = mount
         return mount
 
-    def odometry(self, stamp: float, arrived: float) -> Pose | None:
-        """T_odom_base at a scan's stamp [s], or None as long as it may still come.
+    def place(
+        self, stamp: float, arrived: float, span: tuple[float, float], last_resort: bool = False
+    ) -> Placement | None:
+        """The odometry of a scan, or None as long as it may still come; see Odometry.place.
 
         ``arrived`` is the scan's time.monotonic(). Raises UnusableScanError if it will not come any more.
         """
         with self._lock:
             way = self._tree.way_up(self._base, self._odom)
             odometry = self._odometry.get(way[-2]) if len(way) > 1 else None
-            pose = None if odometry is None else odometry.at(stamp, arrived)
-            if pose is None or len(way) == 2:
-                return pose
-            x, y, theta = compose(pose, to_plane(self._tree.mount(way[-2], self._base), self._base)[0]).tolist()
-            return x, y, theta
+            placement = None if odometry is None else odometry.place(stamp, arrived, span, last_resort)
+            if placement is None or len(way) == 2:
+                return placement
+            return placement.of_child(to_plane(self._tree.mount(way[-2], self._base), self._base)[0])
 
     def missing(self, sensor_frame: str) -> str:
         """Says what scans wait for, such as "no odom -> base_footprint since 2.3 s"."""
@@ -114,6 +121,36 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
                 return f"no {name} (tf has {self._tree.describe()})"
             odometry = self._odometry.get(way[-2])
             return f"{name} is static: no odometry" if odometry is None else odometry.lack(name)
+
+    # ---- an IMU ----
+
+    def add_imu(self, message: Imu) -> None:
+        """Takes the yaw rate of an IMU's message; what tells none is left out."""
+        rate = angular_velocity(message)
+        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+        with self._lock:
+            axis = None if rate is None else self._imu_axis(message.header.frame_id.lstrip("/"))
+            if rate is None or axis is None:
+                return
+            self._imu_heard = time.monotonic()
+            for odometry in self._odometry.values():
+                odometry.add_gyro(stamp, yaw_rate(rate, axis))
+        self._on_odometry()
+
+    def lacks_imu(self) -> bool:
+        """Whether an IMU is to be used and was not heard of late, while odometry was."""
+        return self._use_imu and bool(self._odometry) and time.monotonic() > self._imu_heard + _SILENCE
+
+    def _imu_axis(self, imu_frame: str) -> Vector | None:
+        """Upward in the IMU's frame; None as long as tf may still tell."""
+        if imu_frame not in self._imu_axes:
+            axis = upward(self._tree, self._base, imu_frame)
+            if axis is None and not self._mounts:
+                return None
+            if axis is None:
+                rospy.logwarn("no %s -> %s: the IMU is taken to sit level", self._base, imu_frame)
+            self._imu_axes[imu_frame] = axis or LEVEL
+        return self._imu_axes[imu_frame]
 
     # ---- a localiser ----
 
@@ -159,9 +196,14 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
                 self._localised[child] = time.monotonic() if moving else math.inf
             if parent != self._odom or not moving:
                 return False
-            if self._odometry.setdefault(child, Odometry()).add(stamp, pose):
+            if self._odometry_of(child).add(stamp, pose):
                 self.clear()  # tf2 would refuse what is older
         return True
+
+    def _odometry_of(self, child: str) -> Odometry:
+        if child not in self._odometry:
+            self._odometry[child] = Odometry(max_extrapolation=self._max_extrapolation, use_gyro=self._use_imu)
+        return self._odometry[child]
 
     def _compare(self, parent: str, child: str, pose: Pose) -> None:
         """Complains, once, of a link that carries the laser and moves."""

@@ -22,24 +22,28 @@ TOPICS = {
     "/odom": "nav_msgs/msg/Odometry",
     "/scan": "sensor_msgs/msg/LaserScan",
 }
+IMU = "/imu"
 
 
 def write_bag(drive: Drive, path: Path) -> None:
     """Write /scan at 10 Hz, /tf (odom to base) and /odom at 50 Hz and once /tf_static (base to sensor), by stamp.
 
+    A robot with a gyro has /imu at 50 Hz as well.
+
     The file must not exist yet. Of messages with the same stamp, transforms come first and the scan last.
     """
     store = get_typestore(Stores.ROS1_NOETIC)
     store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms\n", "tf2_msgs/msg/TFMessage"))
+    topics = TOPICS | {IMU: "sensor_msgs/msg/Imu"} if len(drive.gyro) else TOPICS
     with Writer(path) as writer:
         connections = {
             topic: writer.add_connection(
                 topic, kind, typestore=store, callerid=CALLER, latching=int(topic == "/tf_static")
             )
-            for topic, kind in TOPICS.items()
+            for topic, kind in topics.items()
         }
         for topic, stamp, message in _Messages(store.types, drive).all():
-            writer.write(connections[topic], stamp, store.serialize_ros1(message, TOPICS[topic]))
+            writer.write(connections[topic], stamp, store.serialize_ros1(message, topics[topic]))
 
 
 class _Messages:
@@ -59,6 +63,8 @@ class _Messages:
             pose = drive.T_odom_base[seq]
             yield "/tf", stamp, self._transform(seq, stamp, ODOM_FRAME, BASE_FRAME, pose)
             yield "/odom", stamp, self._odometry(seq, stamp, pose, speeds[seq])
+            if len(drive.gyro):
+                yield IMU, stamp, self._imu(seq, stamp, float(drive.gyro[seq]))
             if seq % STEPS_PER_SCAN == 0:
                 yield "/scan", stamp, self._scan(seq // STEPS_PER_SCAN, stamp)
 
@@ -99,6 +105,18 @@ class _Messages:
             twist=self._types["geometry_msgs/msg/TwistWithCovariance"](twist=twist, covariance=unknown),
         )
 
+    def _imu(self, seq: int, stamp: int, yaw_rate: float) -> Any:
+        unknown = np.array([-1.0, *np.zeros(8)])
+        return self._types["sensor_msgs/msg/Imu"](
+            header=self._header(seq, stamp, BASE_FRAME),
+            orientation=self._rotation(0.0),
+            orientation_covariance=unknown,
+            angular_velocity=self._vector(z=yaw_rate),
+            angular_velocity_covariance=np.zeros(9),
+            linear_acceleration=self._vector(),
+            linear_acceleration_covariance=unknown,
+        )
+
     def _scan(self, index: int, stamp: int) -> Any:
         drive = self._drive
         return self._types["sensor_msgs/msg/LaserScan"](
@@ -106,7 +124,7 @@ class _Messages:
             angle_min=drive.angle_min,
             angle_max=drive.angle_min + (drive.ranges.shape[1] - 1) * drive.angle_increment,
             angle_increment=drive.angle_increment,
-            time_increment=0.0,
+            time_increment=drive.config.sensor.time_increment,
             scan_time=STEP * STEPS_PER_SCAN,
             range_min=drive.range_min,
             range_max=drive.range_max,

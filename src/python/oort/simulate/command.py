@@ -22,6 +22,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             field_of_view=math.radians(arguments.fov),
             beams=round(arguments.fov) if arguments.beams is None else arguments.beams,
             range_max=arguments.max_range,
+            sweep_seconds=arguments.sweep,
         )
         config = SimulationConfig(
             sensor,
@@ -31,7 +32,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             arguments.scene,
             arguments.fault,
             arguments.way,
-            arguments.moved,
+            gyro=arguments.gyro,
+            moved=arguments.moved,
         )
         drive = simulate_drive(arguments.seed, config)
         name = arguments.name or f"{arguments.scene}_{arguments.seed}"
@@ -60,6 +62,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--fov", type=float, default=180.0, metavar="DEG", help="field of view, straight ahead")
     parser.add_argument("--beams", type=int, metavar="N", help="beams over it; one per degree if not given")
     parser.add_argument("--max-range", type=float, default=3.0, metavar="M", help="metres that the sensor sees")
+    parser.add_argument("--sweep", type=float, default=0.0, metavar="S", help="seconds that the beams of a scan take")
+    parser.add_argument("--gyro", action="store_true", help="the robot has a gyro: /imu in the bag")
     parser.add_argument("--minutes", type=float, default=3.0, help="drive on after the tour until about then")
     parser.add_argument("--no-person", dest="person", action="store_false", help="nobody crosses the view")
     parser.add_argument("--way", type=int, default=0, metavar="N", help="another drive through the same home")

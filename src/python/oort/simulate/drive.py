@@ -12,6 +12,7 @@ from oort.simulate import faults, person
 from oort.simulate.alike import make_alike_home
 from oort.simulate.course import DOCKED, Course, drive_corridor, tour_home
 from oort.simulate.driver import STEP
+from oort.simulate.gyro import simulate_gyro
 from oort.simulate.home import Home, furnish_home, make_home
 from oort.simulate.odometry import simulate_odometry
 from oort.simulate.planar import transform
@@ -50,6 +51,8 @@ class SimulationConfig:
     moved: int = 0
     """Up to so many pieces of furniture stand elsewhere in their rooms than on drives where it is 0; which ones follows
     from ``way``."""
+    gyro: bool = False
+    """Whether the robot has a gyro."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
@@ -109,6 +112,8 @@ class Drive:
     """(n, 3), true, at the scans."""
     T_map_base_at_odometry: Array
     """(m, 3), true, at the odometry poses."""
+    gyro: Array
+    """(m,) yaw rates [rad/s] of the robot's gyro at the odometry poses; empty if it has none."""
     legs: Array
     """(n, 2, 2) centres of the person's legs in the map frame, NaN while there is none."""
     events: tuple[Event, ...]
@@ -178,7 +183,7 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
     config = config or SimulationConfig()
     if seed < 0:
         raise ValueError(f"seed {seed}: choose a whole number from 0")
-    home_rng, way_rng, person_rng, odometry_rng, sensor_rng, fault_rng = _streams(seed, config.way)
+    home_rng, way_rng, person_rng, odometry_rng, sensor_rng, fault_rng, gyro_rng = _streams(seed, config.way)
     course = _make_course(config, home_rng, way_rng, fault_rng)
     whole = course.motion.steps.shape[0] // STEPS_PER_SCAN * STEPS_PER_SCAN  # the last step is the last scan's
     all_poses, steps = course.motion.poses[: whole + 1], course.motion.steps[:whole]
@@ -188,7 +193,8 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
         places = course.places
         legs = person.simulate_person(poses, STEP * STEPS_PER_SCAN, places.path, len(places.cells), person_rng)
     sensor_poses = compose(poses, config.sensor.mount)
-    true = cast_drive(config.sensor, sensor_poses, course.home.segments, course.home.discs, legs, person.LEG_RADIUS)
+    eyes = sensor_poses if config.sensor.sweep_seconds == 0.0 else _sweeping(config.sensor, all_poses)
+    true = cast_drive(config.sensor, eyes, course.home.segments, course.home.discs, legs, person.LEG_RADIUS)
     T_plan_map = sensor_poses[0]
     T_map_plan = between(T_plan_map, np.zeros(3))
     T_map_base = between(T_plan_map, all_poses)
@@ -210,17 +216,28 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
         T_odom_base_at_scans=odometry[::STEPS_PER_SCAN],
         T_map_base=T_map_base[::STEPS_PER_SCAN],
         T_map_base_at_odometry=T_map_base,
+        gyro=simulate_gyro(steps[:, 1], STEP, gyro_rng) if config.gyro else np.empty(0),
         legs=transform(T_map_plan, legs),
         events=() if config.in_corridor else _events(odometry_stamps),
         fault_times=None if faulty is None else _seconds(odometry_stamps, faulty),
     )
 
 
+def _sweeping(sensor: Sensor, poses: Array) -> Array:
+    """The sensor's poses (n, beams, 3) at the beams of each scan from the base's at each step; at the end it stands."""
+    steps = np.arange(sensor.beams) * sensor.time_increment / STEP
+    at = np.arange(0, len(poses), STEPS_PER_SCAN)[:, None] + steps
+    before = np.minimum(at.astype(np.int64), len(poses) - 1)
+    after = np.minimum(before + 1, len(poses) - 1)
+    base = poses[before] + (at - before)[..., None] * (poses[after] - poses[before])  # headings are not wrapped
+    return compose(base, sensor.mount)
+
+
 def _streams(seed: int, way: int) -> list[Rng]:
     """The random streams of a drive: the home's is the seed's, the others are the seed's and the way's."""
-    sequences = np.random.SeedSequence(seed).spawn(6)
+    sequences = np.random.SeedSequence(seed).spawn(7)
     if way > 0:
-        sequences[1:] = np.random.SeedSequence([seed, way]).spawn(5)
+        sequences[1:] = np.random.SeedSequence([seed, way]).spawn(6)
     return [np.random.Generator(np.random.PCG64(sequence)) for sequence in sequences]
 
 

@@ -9,12 +9,15 @@ import numpy.typing as npt
 
 from oort.poses import Array
 
+LONGEST_SWEEP = 0.1  # s, from scan to scan
+
 
 @dataclass(frozen=True)
 class Sensor:
     """A depth sensor that looks forward; the defaults are a home robot's.
 
-    Beam i points to -field_of_view / 2 + i * field_of_view / beams. All beams of a scan are measured at once.
+    Beam i points to -field_of_view / 2 + i * field_of_view / beams, and is measured ``i * sweep_seconds / beams`` after
+    the scan's stamp: all at once, or one after the other as by a laser that spins.
     Errors, for a beam that ends at range r:
 
     - noise: normal, of standard deviation ``noise + noise_per_metre * r``; ranges are told in whole millimetres;
@@ -38,6 +41,8 @@ class Sensor:
     mixed_pixels: float = 0.25
     mount: tuple[float, float, float] = (0.109, 0.0, 0.0)
     """T_base_sensor: x [m], y [m], heading [rad]"""
+    sweep_seconds: float = 0.0
+    """[s], at most the time from scan to scan"""
 
     def __post_init__(self) -> None:
         """Refuse what no sensor has."""
@@ -45,6 +50,8 @@ class Sensor:
             raise ValueError(f"field of view {np.degrees(self.field_of_view):g} degrees: choose one of 0 to 360")
         if self.beams < 2:
             raise ValueError(f"{self.beams} beams: choose at least 2")
+        if not 0.0 <= self.sweep_seconds <= LONGEST_SWEEP:
+            raise ValueError(f"a sweep of {self.sweep_seconds:g} s: choose one of 0 to {LONGEST_SWEEP:g}")
         if not 0.0 < self.range_min < self.range_max < np.inf:
             raise ValueError(
                 f"ranges from {self.range_min:g} m to {self.range_max:g} m: choose a maximum above the minimum"
@@ -61,6 +68,11 @@ class Sensor:
         return self.field_of_view / self.beams
 
     @property
+    def time_increment(self) -> float:
+        """From beam to beam, s."""
+        return self.sweep_seconds / self.beams
+
+    @property
     def angles(self) -> Array:
         """Bearings (beams,) in the sensor's frame, rad."""
         return self.angle_min + self.angle_increment * np.arange(self.beams, dtype=np.float64)
@@ -71,17 +83,26 @@ EDGE = 0.1  # m between neighbouring beams' ends that makes a mixed pixel possib
 
 
 def cast(segments: Array, discs: Array, origin: Array, bearings: Array, reach: float) -> tuple[Array, Array]:
-    """Ends of beams from ``origin`` (x, y) at absolute ``bearings`` (b,) [rad], among segments (m, 4) and discs (k, 3).
+    """Ends of beams from ``origin`` (2,) at absolute ``bearings`` (b,) [rad], among segments (m, 4) and discs (k, 3).
 
-    Returns ranges (b,) [m], infinite where nothing is within ``reach``, and the cosine of incidence (b,), 1 head-on.
+    The beams may have origins of their own (b, 2), which lie near to each other. Returns ranges (b,) [m], infinite
+    where nothing is within ``reach``, and the cosine of incidence (b,), 1 head-on.
     """
     direction = np.column_stack([np.cos(bearings), np.sin(bearings)])
-    ranges, incidence = _cast_at_segments(_within(segments, origin, reach), origin, direction)
-    near = discs[np.hypot(discs[:, 0] - origin[0], discs[:, 1] - origin[1]) - discs[:, 2] <= reach]
+    middle, far = origin, reach
+    if origin.ndim == 2:
+        middle = origin[len(origin) // 2]
+        far = reach + float(np.hypot(*(origin - middle).T).max())
+    ranges, incidence = _cast_at_segments(_within(segments, middle, far), origin, direction)
+    near = discs[np.hypot(discs[:, 0] - middle[0], discs[:, 1] - middle[1]) - discs[:, 2] <= far]
     if len(near):
-        to_disc = near[:, :2] - origin
-        along = direction @ to_disc.T
-        aside = direction[:, :1] * to_disc[:, 1] - direction[:, 1:] * to_disc[:, 0]
+        if origin.ndim == 2:
+            to_disc = near[:, :2] - origin[:, None]  # (b, k, 2)
+            along = np.sum(direction[:, None] * to_disc, axis=-1)
+        else:
+            to_disc = near[:, :2] - origin
+            along = direction @ to_disc.T
+        aside = direction[:, :1] * to_disc[..., 1] - direction[:, 1:] * to_disc[..., 0]
         half_chord = np.sqrt(np.maximum(near[:, 2] ** 2 - aside**2, 0.0))
         hit = np.where((np.abs(aside) <= near[:, 2]) & (along - half_chord > 0.0), along - half_chord, np.inf)
         nearest = np.argmin(hit, axis=1)
@@ -103,11 +124,12 @@ def _cast_at_segments(segments: Array, origin: Array, direction: Array) -> tuple
     """Ranges and cosines of incidence (b,) at segments alone."""
     if not len(segments):
         return np.full(len(direction), np.inf), np.ones(len(direction))
-    start, side = segments[:, :2] - origin, segments[:, 2:] - segments[:, :2]
+    side = segments[:, 2:] - segments[:, :2]
+    start = segments[:, :2] - (origin if origin.ndim == 1 else origin[:, None])  # (m, 2) or (b, m, 2)
     across = direction[:, :1] * side[:, 1] - direction[:, 1:] * side[:, 0]  # (b, m), sine of the angle times length
     with np.errstate(divide="ignore", invalid="ignore"):
-        ranges = (start[:, 0] * side[:, 1] - start[:, 1] * side[:, 0]) / across
-        place = (start[:, 0] * direction[:, 1:] - start[:, 1] * direction[:, :1]) / across
+        ranges = (start[..., 0] * side[:, 1] - start[..., 1] * side[:, 0]) / across
+        place = (start[..., 0] * direction[:, 1:] - start[..., 1] * direction[:, :1]) / across
         hit = np.where((np.abs(place - 0.5) <= 0.5 + 1e-9) & (ranges > 0.0), ranges, np.inf)
     nearest = np.argmin(hit, axis=1)
     rows = np.arange(len(direction))
@@ -117,12 +139,16 @@ def _cast_at_segments(segments: Array, origin: Array, direction: Array) -> tuple
 def cast_drive(
     sensor: Sensor, poses: Array, segments: Array, discs: Array, legs: Array, radius: float
 ) -> tuple[Array, Array]:
-    """True ranges and cosines of incidence (n, beams) from sensor poses (n, 3), with a person's legs (n, 2, 2)."""
+    """True ranges and cosines of incidence (n, beams) from sensor poses, with a person's legs (n, 2, 2).
+
+    The poses are (n, 3), or (n, beams, 3) for a sensor that sweeps.
+    """
     ranges = np.empty((len(poses), sensor.beams))
     incidence = np.empty_like(ranges)
     for i, pose in enumerate(poses):
         seen = discs if np.isnan(legs[i, 0, 0]) else np.vstack([discs, np.column_stack([legs[i], [radius, radius]])])
-        ranges[i], incidence[i] = cast(segments, seen, pose[:2], pose[2] + sensor.angles, sensor.range_max)
+        bearings = pose[..., 2] + sensor.angles
+        ranges[i], incidence[i] = cast(segments, seen, pose[..., :2], bearings, sensor.range_max)
     return ranges, incidence
 
 

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/geometry/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "oort/geometry/errors.hpp"
+
+namespace oort {
+namespace {
+
+// A home robot drives at 0.5 m/s and turns at 3 rad/s, and a scan takes a fifth of a second at most.
+constexpr double kMostWay = 1.0;   // [m]
+constexpr double kMostTurn = 1.0;  // [rad]
+
+bool is_nothing(const Pose2& motion) {
+  return motion.x == 0.0 && motion.y == 0.0 && motion.theta == 0.0;
+}
+
+}  // namespace
+
+bool is_snapshot(const Sweep& sweep) {
+  if (is_nothing(sweep.T_stamp_first) && is_nothing(sweep.T_stamp_last)) return true;
+  const Pose2 motion = between(sweep.T_stamp_first, sweep.T_stamp_last);
+  return motion.translation().norm() > kMostWay || std::abs(motion.theta) > kMostTurn;
+}
+
+Sweep sweep_of_sensor(const Sweep& sweep_of_base, const Pose2& T_base_sensor) {
+  const Pose2 T_sensor_base = inverse(T_base_sensor);
+  return {T_sensor_base * sweep_of_base.T_stamp_first * T_base_sensor,
+          T_sensor_base * sweep_of_base.T_stamp_last * T_base_sensor};
+}
+
+PointCloud compensate_motion(PointCloud cloud, const Sweep& sweep) {
+  if (!is_finite(sweep.T_stamp_first) || !is_finite(sweep.T_stamp_last)) {
+    throw InputError("scan: the motion while it was taken is not finite; check the transform odom -> base");
+  }
+  if (is_snapshot(sweep)) return cloud;
+  const Pose2 motion = between(sweep.T_stamp_first, sweep.T_stamp_last);
+  const double steps = std::max<double>(1.0, static_cast<double>(cloud.points.size()) - 1.0);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    Point2& point = cloud.points[i];
+    const Pose2 T_stamp_beam = sweep.T_stamp_first * along_arc(motion, static_cast<double>(i) / steps);
+    if (!std::isfinite(point.x)) {  // no reading: y is the bearing
+      point.y += T_stamp_beam.theta;
+      continue;
+    }
+    const Eigen::Vector2d moved = T_stamp_beam * Eigen::Vector2d(point.x, point.y);
+    point.x = round_to_float32(moved.x());
+    point.y = round_to_float32(moved.y());
+  }
+  return cloud;
+}
+
+}  // namespace oort
