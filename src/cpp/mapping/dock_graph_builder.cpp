@@ -19,6 +19,12 @@ constexpr double kSigmasOfReach = 2.0;
 constexpr double kBend = 0.03;       // [m]
 constexpr double kBendTheta = 0.02;  // [rad]
 
+/// Fewer nodes fit somewhere else, too, the sooner the fewer they are: as many misses are allowed less.
+double needed_hits(const DockGraphBuilderParameters& p, std::uint64_t query_size) {
+  const double share = static_cast<double>(query_size) / p.dock_match_submap_size;
+  return p.dock_match_min_hit_pct + (1.0 - share) * (1.0 - p.dock_match_min_hit_pct);
+}
+
 /// Up to `size` nodes around the dock: its node and those after it, then those before it; none of the query's submap,
 /// which would match itself.
 std::vector<PlacedNode> reference_nodes(const Map& map, const Chains& chains, std::uint64_t dock, std::size_t size,
@@ -92,10 +98,10 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
     const auto least = static_cast<std::uint64_t>(parameters_.dock_match_least_size);
     auto size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
     closure = match(map, chains, query, dock, size, reason);
-    while (!closure && size / 2 >= least) {
-      size /= 2;
+    for (size /= 2; !closure && size >= least; size /= 2) {
       std::string later;  // what the documented number of nodes says is what counts
       closure = match(map, chains, query, dock, size, later);
+      if (closure && closure->hit_fraction == 0.0) closure.reset();  // but more nodes did see something
     }
   }
   if (closure) {
@@ -131,7 +137,7 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   }
   if (match.hits == 0) {
     reason = "no_overlap";
-  } else if (match.hit_fraction < parameters_.dock_match_min_hit_pct) {
+  } else if (match.hit_fraction < needed_hits(parameters_, query_size)) {
     reason = "hits";
   } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
     reason = "distance";
