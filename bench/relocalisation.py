@@ -199,9 +199,7 @@ def follow(homes: Homes, row: str, seed: int) -> dict[str, Any]:
 
 
 def _add(localizer: Localizer, scan: Scan) -> None:
-    localizer.add_scan(
-        scan.time, scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max, scan.ranges, scan.odometry
-    )
+    localizer.add_scan(*scan.arguments)
 
 
 def _follow_figures(

@@ -8,6 +8,8 @@ import pytest
 
 from oort.live import UnusableScanError
 from oort.live.odometry import Odometry
+from oort.live.snapshot import odom_pose_of
+from oort.poses import compose
 
 
 def told(start: float = 0.0, end: float = 10.0, speed: float = 1.0) -> Odometry:
@@ -68,3 +70,59 @@ def test_what_is_lacking(monkeypatch: pytest.MonkeyPatch) -> None:
     assert odometry.lack("odom -> base") == "check the clocks: scans are stamped 3600.0 s ahead of odometry"
     now[0] += 2.3
     assert odometry.lack("odom -> base") == "no odom -> base since 2.3 s"
+
+
+def test_a_scan_waits_for_its_last_beam() -> None:
+    odometry = told(end=10.0)  # up to 9.98
+    now = time.monotonic()
+    placement = odometry.place(9.8, now, (0.0, 0.1))
+    assert placement is not None
+    assert placement.sweep is not None
+    assert placement.sweep[1] == pytest.approx((0.1, 0.0, 0.0))
+    assert not placement.guessed
+    assert odometry.place(9.94, now, (0.0, 0.1)) is None
+    assert odometry.place(9.94, now, (0.0, 0.1), last_resort=True) is None  # as long as nothing may be extrapolated
+    tell(odometry, 10.0, 11.0)
+    assert odometry.place(9.94, now, (0.0, 0.1)) is not None
+
+
+def test_the_last_resort_is_bounded() -> None:
+    odometry = Odometry(max_extrapolation=0.1)
+    tell(odometry, 0.0, 10.0)
+    now = time.monotonic()
+    for stamp, span in ((9.94, (0.0, 0.1)), (10.05, (0.0, 0.0))):
+        assert odometry.place(stamp, now, span) is None
+        placement = odometry.place(stamp, now, span, last_resort=True)
+        assert placement is not None
+        assert placement.guessed
+        assert placement.odometry == pytest.approx((stamp, 0.0, 0.0))
+    assert odometry.place(10.05, now, (0.0, 0.1), last_resort=True) is None
+    assert odometry.place(10.2, now, last_resort=True) is None
+
+
+def test_no_last_resort_across_a_clock_that_was_set_back() -> None:
+    odometry = Odometry(max_extrapolation=0.1)
+    tell(odometry, 0.0, 10.0)
+    assert odometry.place(9.9, time.monotonic()) is not None
+    assert odometry.place(5.0, time.monotonic(), last_resort=True) is None
+
+
+def test_a_gyro_turns_the_odometry_and_the_map_is_told_in_the_frame_that_is_reported() -> None:
+    odometry = Odometry(use_gyro=True)
+    for k in range(300):  # it stands for two seconds, and then turns by 1 rad/s, of which the wheels tell a half
+        turned = max(0.0, 0.02 * k - 2.0)
+        odometry.add_gyro(0.02 * k, 1.01 if turned > 0.0 else 0.01)
+        odometry.add(0.02 * k, (3.0, 0.0, 0.5 * turned))
+    now = time.monotonic()
+    placement = odometry.place(5.0, now)
+    assert placement is not None
+    assert placement.guessed
+    assert placement.odometry == pytest.approx((3.0, 0.0, 3.0), abs=0.02)
+    T_map_odom = (1.0, 2.0, 0.3)
+    on_map = compose(T_map_odom, placement.odometry)
+    reported = odom_pose_of(T_map_odom, placement.reported_frame)
+    assert compose(reported, (3.0, 0.0, 1.5)) == pytest.approx(on_map)
+    assert odometry.place(5.99, now) is None  # the gyro is behind
+    odometry.add(6.2, (3.0, 0.0, 2.0))
+    assert odometry.place(6.1, now) is None
+    assert odometry.place(6.1, now, last_resort=True) is not None

@@ -19,8 +19,8 @@ from oort.simulate.writers import write_carmen
 OF_THE_NODE = {"base_frame", "odom_frame", "sensor_frame", "map_frame"}
 """Names for the ROS node alone."""
 
-OF_THE_READER = {"max_extrapolation", "use_imu"}
-"""Before scans come to the engine; tests/py/test_recording_motion.py has the cases."""
+OF_BAGS = {"motion_compensation", "max_extrapolation", "use_imu"}
+"""What a CARMEN log has no occasion for; tests/py/test_recording_motion.py has the cases."""
 
 RARE = {
     # how wide the matcher searches where odometry is very sure, and where it begins again after a poor match
@@ -78,7 +78,7 @@ USED = [
     for entry in parameter_table()
     if not entry.path.endswith((".num_threads", ".branch_and_bound_depth"))  # the result is the same
     and entry.status == "used"
-    and entry.path not in OF_THE_NODE | OF_THE_READER | RARE
+    and entry.path not in OF_THE_NODE | OF_BAGS | RARE
     and not entry.path.startswith("localization.")
     and (not entry.choices or len(entry.choices) > 1)
 ]

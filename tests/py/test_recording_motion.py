@@ -62,11 +62,10 @@ def test_a_scan_has_the_motion_while_it_was_taken(tmp_path: Path, kind: str) -> 
 
 
 def test_beams_that_are_turned_round_keep_their_times(tmp_path: Path) -> None:
-    upright, hanging = (
-        next(opened(turning(roll=roll).scan(0.5, time_increment=0.05), tmp_path / name).scans())
-        for roll, name in ((0.0, "up"), (math.pi, "down"))
-        if (tmp_path / name).mkdir() is None
-    )
+    paths = [
+        turning(roll=roll).scan(0.5, time_increment=0.05).ros1(tmp_path / f"{roll}.bag") for roll in (0.0, math.pi)
+    ]
+    upright, hanging = (next(open_recording(path).scans()) for path in paths)
     assert upright.sweep is not None
     assert hanging.sweep == upright.sweep[::-1]
     assert hanging.ranges.tolist() == upright.ranges.tolist()[::-1]

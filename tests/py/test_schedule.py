@@ -9,6 +9,7 @@ import os
 import resource
 import signal
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from oort import InputError
-from oort.events import SCAN, Event, EventLog, read_events
+from oort.events import SCAN, Event, EventLog, read_events, scan_entry
 from oort.recording import Scan
 from oort.schedule import LoggedSchedule, Schedule, TimedSchedule, make_schedule
 from scenes import room_scan
@@ -85,6 +86,31 @@ def test_only_listed_scans_are_mapped_and_calls_come_where_they_are_listed() -> 
     made = Made()
     schedule = LoggedSchedule(logged("map/start", 2.0, "a", "b", 4.0, "map/stop"), made)
     assert walk(schedule, made, [1.0, 2.0, 3.0, 4.0, 5.0]) == ["0 map/start", "2", "2 a", "3 b", "4", "5 map/stop"]
+
+
+def test_a_scan_has_the_odometry_that_the_log_says_it_had(tmp_path: Path) -> None:
+    sweep = ((0.0, 0.0, 0.0), (0.1, 0.0, 1.0 / 3.0))
+    had = [
+        replace(scan(1.0), odometry=(0.1, 0.2, 0.3), sweep=sweep, guessed=True),
+        replace(scan(2.0), odometry=(1.0 / 3.0, 0.0, 0.0), guessed=True),
+        scan(3.0),
+    ]
+    log = EventLog(tmp_path / "log.json")
+    for taken in had:
+        log.add(0.0, SCAN, scan_entry(taken))
+    log.close()
+    schedule = make_schedule(read_events(tmp_path / "log.json"), Made())
+    again = [schedule.take(replace(scan(t), odometry=(7.0, 7.0, 7.0))) for t in (1.0, 2.0)]
+    assert [(s.odometry, s.sweep) for s in again if s is not None] == [(s.odometry, s.sweep) for s in had[:2]]
+    last = scan(3.0)
+    assert schedule.take(last) is last
+
+
+@pytest.mark.parametrize("rest", [[[1, 2]], [[1, 2, 3], [[1, 2, 3]]], [[1, 2, "x"], None], [None, None]])
+def test_a_log_with_odometry_that_cannot_be(rest: list[object]) -> None:
+    schedule = LoggedSchedule([Event(0.0, SCAN, [scan(1.0).stamp, *rest])], Made())
+    with pytest.raises(InputError, match="cannot be"):
+        schedule.take(scan(1.0))
 
 
 def test_the_times_in_a_log_count_for_nothing() -> None:

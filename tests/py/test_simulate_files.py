@@ -176,3 +176,24 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path, capsys: pytest.Cap
     (tmp_path / "file").write_text("")
     assert main(["--minutes", "0", "--out", str(tmp_path / "file" / "folder")]) == 2
     assert "file" in capsys.readouterr().err
+
+
+def test_a_sweep_and_a_gyro_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--seed", "2", "--minutes", "0", "--no-picture", "--out", str(tmp_path)]
+    assert main([*words, "--name", "plain"]) == 0
+    assert main([*words, "--name", "gyro", "--gyro"]) == 0
+    assert main([*words, "--name", "sweep", "--sweep", "0.09"]) == 0
+    for ending in (".clf", ".truth.tum"):  # the gyro leaves all else as it is
+        assert (tmp_path / f"gyro{ending}").read_bytes() == (tmp_path / f"plain{ending}").read_bytes()
+    counts = {}
+    with AnyReader([tmp_path / "gyro.bag"]) as reader:
+        counts = {connection.topic: connection.msgcount for connection in reader.connections}
+    assert counts["/imu"] == counts["/odom"]
+    with AnyReader([tmp_path / "sweep.bag"]) as reader:
+        scans = [connection for connection in reader.connections if connection.topic == "/scan"]
+        _, _, raw = next(reader.messages(scans))
+        message: Any = reader.deserialize(raw, scans[0].msgtype)
+        assert message.time_increment == pytest.approx(0.09 / 180)
+        assert "/imu" not in {connection.topic for connection in reader.connections}
+    assert main([*words, "--sweep", "1"]) == 2
+    assert "a sweep of 1 s" in capsys.readouterr().err

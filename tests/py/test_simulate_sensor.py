@@ -3,11 +3,13 @@
 """The simulated sensor: ray casting against a slow, separate one, and the sizes of its errors."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from oort.poses import between, compose
 from oort.simulate import Sensor, SimulationConfig, simulate_drive
 from oort.simulate.sensor import cast, measure
 
@@ -42,6 +44,10 @@ def test_casting_agrees_with_brute_force() -> None:
     expected = [march(segments, discs, np.array([0.05, -0.1]), float(b), 3.0) for b in bearings]
     np.testing.assert_allclose(ranges, expected, atol=1e-9)
     assert 0 < np.count_nonzero(np.isinf(ranges)) < len(ranges)
+    origins = rng.uniform(-0.1, 0.1, (400, 2))
+    ranges, _ = cast(segments, discs, origins, bearings, 3.0)
+    expected = [march(segments, discs, o, float(b), 3.0) for o, b in zip(origins, bearings, strict=True)]
+    np.testing.assert_allclose(ranges, expected, atol=1e-9)
 
 
 def test_incidence() -> None:
@@ -123,9 +129,39 @@ def test_beams_are_as_documented() -> None:
     assert narrow.angle_increment == pytest.approx(math.radians(0.5))
 
 
+def test_a_sweep_sees_from_where_the_sensor_is_at_each_beam() -> None:
+    """While the robot stands it sees the same; while it moves, each beam is a beam of a sensor at that place."""
+    exact = Sensor(noise=0.0, noise_per_metre=0.0, mixed_pixels=0.0, dropout=0.0)
+    still, sweeping = (
+        simulate_drive(2, SimulationConfig(replace(exact, sweep_seconds=sweep), person=False, minutes=0.0))
+        for sweep in (0.0, 0.1)
+    )
+    assert np.array_equal(still.T_map_base, sweeping.T_map_base)
+    stands = np.all(still.T_map_base[1:] == still.T_map_base[:-1], axis=1)
+    stands &= np.all(still.T_map_base_at_odometry[2:-3:5] == still.T_map_base[:-1], axis=1)
+    assert stands.sum() > 20
+    assert np.array_equal(still.ranges[:-1][stands], sweeping.ranges[:-1][stands])
+    assert np.mean(still.ranges[:-1][~stands] != sweeping.ranges[:-1][~stands]) > 0.5
+    # Beam 90 of a scan comes 0.05 s after it, half way between two poses of odometry.
+    for number in np.flatnonzero(~stands)[::50].tolist():
+        before, after = (sweeping.T_map_base_at_odometry[5 * number + k] for k in (2, 3))
+        base = before + 0.5 * between(np.zeros(3), after - before)
+        x, y, theta = compose(base, sweeping.T_base_sensor)
+        told, _ = cast(
+            sweeping.home.segments, sweeping.home.discs, np.array([x, y]), theta + sweeping.config.sensor.angles, 3.0
+        )
+        if 0.1 < told[90] < 3.0:
+            assert sweeping.ranges[number, 90] == pytest.approx(told[90], abs=2e-3)
+
+
 @pytest.mark.parametrize(
     ("kwargs", "said"),
-    [({"field_of_view": 0.0}, "field of view 0 "), ({"beams": 1}, "1 beams"), ({"range_max": 0.05}, "0.05 m")],
+    [
+        ({"field_of_view": 0.0}, "field of view 0 "),
+        ({"beams": 1}, "1 beams"),
+        ({"range_max": 0.05}, "0.05 m"),
+        ({"sweep_seconds": 0.2}, "0.2 s"),
+    ],
 )
 def test_impossible_sensors_are_refused(kwargs: dict[str, float], said: str) -> None:
     with pytest.raises(ValueError, match=said):

@@ -34,6 +34,7 @@ def cut(drive: Drive, scans: slice) -> Drive:
         T_odom_base_at_scans=drive.T_odom_base_at_scans[scans],
         T_map_base=drive.T_map_base[scans],
         T_map_base_at_odometry=drive.T_map_base_at_odometry[poses],
+        gyro=drive.gyro[poses],
         legs=drive.legs[scans],
     )
 
@@ -70,15 +71,24 @@ class Player:
 
 
 @contextmanager
-def play(ros: Core, folder: Path, *bags: Path, rate: float = 20.0) -> Iterator[Player]:
-    """Plays scans and transforms, and marks if they are among the bags; `folder` takes what it prints.
+def play(ros: Core, folder: Path, *bags: Path, rate: float = 20.0, imu: bool = False) -> Iterator[Player]:
+    """Plays scans, transforms and maybe an IMU, and marks if they are among the bags; `folder` takes what it prints.
 
     Begins when somebody listens to each of these topics, so that nothing is lost.
     """
     marked = [_MARK, _HALT] if len(bags) > 1 else []
     command = ["rosbag", "play", f"__name:={_PLAYER}", "--clock", "-r", str(rate), "--queue=10000"]
     command += ["--wait-for-subscribers", *(["--pause-topics", _HALT] if marked else [])]
-    command += ["--topics", "/scan", "/tf", "/tf_static", *marked, "--bags", *map(str, bags)]
+    command += [
+        "--topics",
+        "/scan",
+        "/tf",
+        "/tf_static",
+        *(["/imu"] if imu else []),
+        *marked,
+        "--bags",
+        *map(str, bags),
+    ]
     process = Node(ros, _PLAYER, command, folder / f"play.{len(list(folder.glob('play.*')))}.log", folder)
     player = Player(process)
     subscribers = [

@@ -94,6 +94,7 @@ def of_drive(drive: Drive) -> Course:
     )
 
 
+EXTRAPOLATED = 0.1  # [s] beyond the last odometry; a later scan waits for more
 COURSE = around_the_room()
 SHORT = COURSE[:40]
 

@@ -21,7 +21,7 @@ from oort.events import SCAN, read_events
 from oort.recording import open_recording
 from oort.replay import main as replay
 from oort.session import Session
-from oort.simulate import Drive, SimulationConfig, simulate_drive
+from oort.simulate import Drive, Sensor, SimulationConfig, simulate_drive
 from oort.simulate.bag import write_bag
 from ros.client import Client, Heard, until
 from ros.conftest import NodeFactory
@@ -155,6 +155,34 @@ def test_start_stop_and_resume_need_no_log(
     told = client.figures()
     assert (told["scans processed"], told["clock jumps"]) == ("800", "0")
     assert files(second) == replayed(short_bag, tmp_path / "again", "--resume", first, "--pose", "0", "0", "0")
+
+
+@pytest.mark.parametrize("use_imu", [False, True])
+def test_scans_that_take_time_and_a_gyro(
+    ros: Core, rospy: Any, node: NodeFactory, tmp_path: Path, use_imu: bool
+) -> None:
+    """The bag ends while the robot drives, so that the last scan's beams are beyond the last odometry."""
+    sensor = Sensor(sweep_seconds=0.08)
+    drive = simulate_drive(4, SimulationConfig(sensor, odometry_error=5.0, minutes=1, gyro=True))
+    bag, log, params = tmp_path / "sweep.bag", tmp_path / "log.json", tmp_path / "params.json"
+    write_bag(cut(drive, slice(300)), bag)
+    params.write_text(json.dumps({"use_imu": use_imu}))
+    ros.set_parameter("/use_sim_time", True)
+    client = Client(node(f"_events_log:={log}", f"_params:={params}"))
+    client.call("map/start", str(tmp_path / "map"))
+    with play(ros, tmp_path, bag, imu=use_imu) as player:
+        player.wait()
+    until(lambda: client.figures()["scans received"] == "300", "all scans have come")
+    client.call("map/stop")
+    told = client.figures()
+    assert (told["scans processed"], told["scans dropped"]) == ("300", "0")
+    expected = files(tmp_path / "map")
+    assert replayed(bag, tmp_path / "replay", "--events", log, "--params", params) == expected
+    if not use_imu:  # what a gyro's odometry is depends on when the node began to listen
+        assert replayed(bag, tmp_path / "without log", "--params", params) == expected
+    others = tmp_path / "others.json"
+    others.write_text(json.dumps({"motion_compensation": False}))
+    assert replayed(bag, tmp_path / "otherwise", "--params", others) != expected
 
 
 def test_calls_at_any_moment_are_replayed_from_the_log(

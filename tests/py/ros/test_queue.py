@@ -27,7 +27,7 @@ from oort.recording.motion import Placement
 from oort.ros.messages import rotation, yaw
 from oort.session import Session
 from ros.client import Client, Heard, figures, until
-from ros.robot import COURSE, SHORT, Course, Robot, around_the_room
+from ros.robot import COURSE, EXTRAPOLATED, SHORT, Course, Robot, around_the_room
 
 pytest_plugins = ["ros.fixtures"]
 pytestmark = pytest.mark.usefixtures("cleared")
@@ -89,6 +89,7 @@ def test_scans_whose_odometry_never_comes_are_named_and_counted(client: Client, 
     before = client.figures()
     robot.base_on = False
     with Heard("/rosout", Log, "/oort_slam") as log, Heard("/diagnostics", DiagnosticArray) as diagnostics:
+        time.sleep(2.0 * EXTRAPOLATED)
         robot.drive(COURSE[40:54], rate=500.0, odometry=False)
         complaint = log.wait_for(lambda line: "scans waiting" in line.msg, "a warning").msg
         assert re.fullmatch(r"no odom -> base_footprint since \d+\.\d s; 14 scans waiting", complaint)

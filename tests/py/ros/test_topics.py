@@ -21,7 +21,7 @@ from oort import OccupancyGrid as Grid
 from oort import Parameters, load_map, render_map
 from oort.ros.messages import yaw
 from ros.client import Client, Heard, HeardTransforms, figures, until
-from ros.robot import COURSE, SHORT, Course, Robot
+from ros.robot import COURSE, EXTRAPOLATED, SHORT, Course, Robot
 
 pytest_plugins = ["ros.fixtures"]
 pytestmark = pytest.mark.usefixtures("cleared")
@@ -264,6 +264,7 @@ def test_scans_that_cannot_be_mapped_are_counted(client: Client, robot: Robot) -
     robot.base_on = False
     robot.drive(SHORT[:5], odometry=False)
     robot.drive(replace(SHORT[:2], angle_increment=float("nan")))
+    time.sleep(2.0 * EXTRAPOLATED)
     robot.drive(SHORT[:4], odometry=False)
     started = time.monotonic()
     client.call("map/stop")

@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip("rospy")
 import rospy
 from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
+from sensor_msgs.msg import Imu
 
 from oort import Parameters
 from oort.live import UnusableScanError
@@ -108,6 +109,51 @@ def test_odometry_by_way_of_another_frame(transforms: Transforms) -> None:
     transforms.set_transform_static(odometry(0.0, (0.1, 0.0, 0.0), "base_link", "base_footprint"), "robot")
     transforms.set_transform(odometry(100.0, (1.0, 0.0, math.pi / 2), child="base_link"), "robot")
     assert lookup(transforms, 100.0) == pytest.approx((1.0, 0.1, math.pi / 2))
+
+
+def imu(stamp: float, rate: tuple[float, float, float], frame: str = "imu") -> Imu:
+    message = Imu()
+    message.header.stamp, message.header.frame_id = rospy.Time.from_sec(stamp), frame
+    message.angular_velocity = Vector3(*rate)
+    return message
+
+
+def test_a_gyro(told: list[None]) -> None:
+    """An IMU that hangs upside down on a robot that stands for two seconds and then turns, untold by its wheels."""
+    parameters = Parameters()
+    parameters.set("use_imu", True)
+    transforms = Transforms(parameters, lambda: told.append(None))
+    assert not transforms.lacks_imu()
+    transforms.add_imu(imu(99.0, (0.0, 0.0, 1.0)))  # before tf tells how it sits
+    transforms.set_transform_static(laser(), "robot")
+    upside_down = transform("base_footprint", "imu", rospy.Time(), (0.0, 0.0, 0.0))
+    upside_down.transform.rotation = Quaternion(1.0, 0.0, 0.0, 0.0)
+    transforms.set_transform_static(upside_down, "robot")
+    assert transforms.mount(LASER) is not None
+    for step in range(200):
+        transforms.set_transform(odometry(100.0 + 0.02 * step, (1.0, 0.0, 0.0)), "robot")
+        if step == 0:
+            assert transforms.lacks_imu()
+        transforms.add_imu(imu(100.0 + 0.02 * step, (0.5, 0.5, -1.0 if step > 100 else 0.0)))
+        transforms.add_imu(imu(100.0 + 0.02 * step, (math.nan, 0.0, 0.0)))
+    assert not transforms.lacks_imu()
+    placement = transforms.place(103.0, time.monotonic(), SNAPSHOT)
+    assert placement is not None
+    assert placement.odometry == pytest.approx((1.0, 0.0, 1.0), abs=0.02)
+    assert placement.reported_frame is not None
+
+
+def test_a_scan_that_takes_time_by_way_of_another_frame(transforms: Transforms) -> None:
+    fixed = odometry(0.0, (0.5, 0.0, 0.0), "base_link", "base_footprint")
+    transforms.set_transform_static(fixed, "robot")
+    transforms.set_transform(odometry(100.0, (1.0, 0.0, 0.0), child="base_link"), "robot")
+    transforms.set_transform(odometry(101.0, (1.0, 0.0, math.pi / 2), child="base_link"), "robot")
+    placement = transforms.place(100.0, time.monotonic(), (0.0, 1.0))
+    assert placement is not None
+    assert placement.odometry == pytest.approx((1.5, 0.0, 0.0))
+    assert placement.sweep is not None
+    assert placement.sweep[1] == pytest.approx((-0.5, 0.5, math.pi / 2))
+    assert transforms.place(100.5, time.monotonic(), (0.0, 1.0)) is None
 
 
 def test_odometry_with_slashes(transforms: Transforms) -> None:

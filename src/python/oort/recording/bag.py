@@ -104,8 +104,8 @@ def _choose(path: Path, reader: AnyReader, kind: str, wanted: str | None, what: 
         for topic in topics:
             if topic.strip("/") == wanted.strip("/"):
                 return topic
-        others = f"there are {what.split()[-1]} on: {', '.join(topics) or 'no topic'}"
-        raise InputError(f"{path}: no {what} on {wanted}; {others}")
+        known = f"there are {what.split()[-1]} on: {', '.join(topics) or 'no topic'}"
+        raise InputError(f"{path}: no {what} on {wanted}; {known}")
     if not topics:
         others = sorted({f"{connection.topic} ({connection.msgtype})" for connection in reader.connections})
         raise InputError(f"{path}: no topic of type {kind}; the bag has: {', '.join(others[:20]) or 'nothing'}")

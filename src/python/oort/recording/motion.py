@@ -6,9 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from numpy.typing import ArrayLike
-
-from oort.poses import between, compose
+from oort.poses import Array, between, compose
 from oort.recording.types import Pose, Sweep
 
 SNAPSHOT = (0.0, 0.0)
@@ -55,6 +53,6 @@ def place(lookup: Callable[[float], Pose | None], stamp: float, span: tuple[floa
     return Placement(odometry, (_pose(between(odometry, first)), _pose(between(odometry, last))))
 
 
-def _pose(values: ArrayLike) -> Pose:
-    x, y, theta = values.tolist()  # type: ignore[union-attr]
-    return float(x), float(y), float(theta)
+def _pose(values: Array) -> Pose:
+    x, y, theta = values.tolist()
+    return x, y, theta

@@ -33,6 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             arguments.fault,
             arguments.way,
             gyro=arguments.gyro,
+            turn_error=arguments.turn_error,
             moved=arguments.moved,
         )
         drive = simulate_drive(arguments.seed, config)
@@ -59,6 +60,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--scene", choices=SCENES, default=SCENES[0], help="what the robot drives through")
     parser.add_argument("--fault", choices=FAULTS, default=FAULTS[0], help="what goes wrong once on the way")
     parser.add_argument("--odometry-error", type=float, default=1.0, metavar="F", help="0: none, 3: a bad base")
+    parser.add_argument("--turn-error", type=float, default=1.0, metavar="F", help="one more factor on that of turns")
     parser.add_argument("--fov", type=float, default=180.0, metavar="DEG", help="field of view, straight ahead")
     parser.add_argument("--beams", type=int, metavar="N", help="beams over it; one per degree if not given")
     parser.add_argument("--max-range", type=float, default=3.0, metavar="M", help="metres that the sensor sees")

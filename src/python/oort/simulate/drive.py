@@ -53,11 +53,15 @@ class SimulationConfig:
     from ``way``."""
     gyro: bool = False
     """Whether the robot has a gyro."""
+    turn_error: float = 1.0
+    """One more factor on the errors of odometry's turns."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
         if not 0.0 <= self.odometry_error <= 100.0:
             raise ValueError(f"odometry error factor {self.odometry_error:g}: choose one from 0 to 100")
+        if not 0.0 <= self.turn_error <= 100.0:
+            raise ValueError(f"turn error factor {self.turn_error:g}: choose one from 0 to 100")
         if not 0.0 <= self.minutes <= 40.0:
             raise ValueError(f"{self.minutes:g} minutes: choose from 0 to 40")
         if self.scene not in SCENES:
@@ -199,7 +203,7 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
     T_map_plan = between(T_plan_map, np.zeros(3))
     T_map_base = between(T_plan_map, all_poses)
     start = np.array([*odometry_rng.uniform(-2.0, 2.0, 2), odometry_rng.uniform(-np.pi, np.pi)])
-    odometry = simulate_odometry(steps, STEP, start, config.odometry_error, odometry_rng)
+    odometry = simulate_odometry(steps, STEP, start, config.odometry_error, odometry_rng, config.turn_error)
     odometry[:, 2] = wrap_angle(odometry[:, 2])
     faulty = course.carried
     if config.fault in _ODOMETRY_FAULTS:

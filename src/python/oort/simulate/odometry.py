@@ -22,10 +22,13 @@ SLIP_WAY = (0.01, 0.04)  # m that the wheels turn too much
 SLIP_TURN = 0.02  # rad
 
 
-def simulate_odometry(steps: Array, step: float, start: Array, error: float, rng: np.random.Generator) -> Array:
+def simulate_odometry(
+    steps: Array, step: float, start: Array, error: float, rng: np.random.Generator, turn_error: float = 1.0
+) -> Array:
     """Poses T_odom_base (n + 1, 3) of odometry from the true steps (n, 2) of way [m] and turn [rad].
 
-    ``step`` is a step's duration [s], ``start`` the first pose, ``error`` a factor on all errors (0: none).
+    ``step`` is a step's duration [s], ``start`` the first pose, ``error`` a factor on all errors (0: none) and
+    ``turn_error`` one more on those of turns.
     The heading is continuous, not wrapped, and a robot at rest is seen at rest.
     """
     way, turn = steps[:, 0], steps[:, 1]
@@ -34,15 +37,15 @@ def simulate_odometry(steps: Array, step: float, start: Array, error: float, rng
     drift = DRIFT * float(rng.standard_normal())
     moving = (way != 0.0) | (turn != 0.0)
     way_error = way_scale * way + WAY_NOISE * np.sqrt(np.abs(way)) * rng.standard_normal(n)
-    turn_error = turn_scale * turn + moving * drift * step
-    turn_error += TURN_NOISE_PER_WAY * np.sqrt(np.abs(way)) * rng.standard_normal(n)
-    turn_error += TURN_NOISE_PER_TURN * np.sqrt(np.abs(turn)) * rng.standard_normal(n)
+    turn_wrong = turn_scale * turn + moving * drift * step
+    turn_wrong += TURN_NOISE_PER_WAY * np.sqrt(np.abs(way)) * rng.standard_normal(n)
+    turn_wrong += TURN_NOISE_PER_TURN * np.sqrt(np.abs(turn)) * rng.standard_normal(n)
     slips = rng.random(n) < SLIPS_PER_METRE * np.abs(way)
     spread = np.ones(SLIP_STEPS) / SLIP_STEPS
     way_slip = np.convolve(slips * np.sign(way) * rng.uniform(*SLIP_WAY, n), spread)[:n]
     turn_slip = np.convolve(slips * rng.normal(0.0, SLIP_TURN, n), spread)[:n]
     way_seen = way + error * (way_error + moving * way_slip)
-    turn_seen = turn + error * (turn_error + moving * turn_slip)
+    turn_seen = turn + error * turn_error * (turn_wrong + moving * turn_slip)
     heading = start[2] + np.concatenate([[0.0], np.cumsum(turn_seen)])
     middle = heading[:-1] + 0.5 * turn_seen
     x = start[0] + np.concatenate([[0.0], np.cumsum(way_seen * np.cos(middle))])
