@@ -65,11 +65,11 @@ class PlacementSearch {
   /// Placements that views have without a guess, those that most views agree with first, apart from each other.
   std::vector<Pose2> candidates() const {
     const std::vector<Vote> all = votes();
-    std::vector<std::pair<int, std::size_t>> by_support;  // views that disagree, vote
-    for (std::size_t k = 0; k < all.size(); ++k) by_support.emplace_back(-count_agreeing(all, all[k]), k);
-    std::sort(by_support.begin(), by_support.end());
+    std::vector<std::pair<int, std::size_t>> ranked;  // how many views agree, less than 0; the vote
+    for (std::size_t k = 0; k < all.size(); ++k) ranked.emplace_back(-count_agreeing(all, all[k]), k);
+    std::sort(ranked.begin(), ranked.end());
     std::vector<Pose2> chosen;
-    for (const auto& [count, k] : by_support) {
+    for (const auto& [count, k] : ranked) {
       if (chosen.size() == kMaxPlacements) break;
       const Pose2& pose = all[k].T_target_query;
       if (std::none_of(chosen.begin(), chosen.end(), [&](const Pose2& other) { return same(other, pose); })) {
