@@ -119,7 +119,7 @@ TEST_F(MergeTest, AGivenPlaceMayBeOff) {
   const Merged merged = merge_maps(a, b, Parameters{}, truth * Pose2{0.3, -0.2, 0.1});
   EXPECT_EQ(merged.placement.found_by, "given");
   EXPECT_LT(worst_error(merged.map, forth, back), 0.05);
-  EXPECT_NE(refusal(a, b, truth * Pose2{1.5, 1.0, 0.8}), "");
+  EXPECT_NE(refusal(a, b, truth * Pose2{1.5, 1.0, 0.8}).find("at the place that was given"), std::string::npos);
   EXPECT_NE(refusal(a, b, Pose2{NAN, 0.0, 0.0}), "");
 }
 
@@ -154,6 +154,15 @@ TEST_F(MergeTest, WhatCannotBeMergedIsAnError) {
   broken.graph.nodes[1].pose.x = NAN;
   EXPECT_NE(refusal(a, broken).find("the second map cannot be used"), std::string::npos);
   EXPECT_NE(refusal(a, a).find("copy of the other"), std::string::npos);
+}
+
+TEST_F(MergeTest, AMapOfOneSceneIsJoinedOnlyWhereItIsSaidToLie) {
+  const std::vector<Pose2> bit(back.begin(), back.begin() + 12);
+  const Map scene = map_of(make_room(), bit, 1000.0, 2);
+  const std::string told = refusal(a, scene);
+  EXPECT_NE(told.find("too little"), std::string::npos) << told;
+  const Merged merged = merge_maps(a, scene, Parameters{}, between(forth[0] * kMount, back[0] * kMount));
+  EXPECT_LT(worst_error(merged.map, forth, back), 0.05);
 }
 
 TEST_F(MergeTest, AMapOfAnotherRoomIsRefused) {

@@ -43,6 +43,7 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         "evaluate autogenerate",
         "graph solve",
         "migrate",
+        "merge",
         "parameters table",
     ],
 )

@@ -35,7 +35,8 @@ constexpr double kVoxel = 0.1;       // [m]
 constexpr double kFits = 0.75;        // support of one that fits
 constexpr double kContradicts = 0.3;  // what cannot be, of one that contradicts
 
-constexpr int kNeeded = 3;  // views, unless there are fewer
+// Views that must fit. One or two scenes look like one or two of some other home now and then (1 of 30 tries).
+constexpr int kNeeded = 3;
 
 /// Where the query map, whose views are looked for, may lie on the target, the other map.
 struct Vote {
@@ -64,11 +65,11 @@ class PlacementSearch {
   /// Placements that views have without a guess, those that most views agree with first, apart from each other.
   std::vector<Pose2> candidates() const {
     const std::vector<Vote> all = votes();
-    std::vector<std::pair<int, std::size_t>> by_support;  // views that disagree, vote
-    for (std::size_t k = 0; k < all.size(); ++k) by_support.emplace_back(-count_agreeing(all, all[k]), k);
-    std::sort(by_support.begin(), by_support.end());
+    std::vector<std::pair<int, std::size_t>> ranked;  // how many views agree, less than 0; the vote
+    for (std::size_t k = 0; k < all.size(); ++k) ranked.emplace_back(-count_agreeing(all, all[k]), k);
+    std::sort(ranked.begin(), ranked.end());
     std::vector<Pose2> chosen;
-    for (const auto& [count, k] : by_support) {
+    for (const auto& [count, k] : ranked) {
       if (chosen.size() == kMaxPlacements) break;
       const Pose2& pose = all[k].T_target_query;
       if (std::none_of(chosen.begin(), chosen.end(), [&](const Pose2& other) { return same(other, pose); })) {
@@ -231,7 +232,7 @@ MapSearch find_placements(const Map& a, const Map& b, const Parameters& paramete
   const PlacementSearch search(swap ? b : a, swap ? a : b, parameters);
   MapSearch result;
   result.views = static_cast<int>(search.size());
-  result.needed = std::min(kNeeded, result.views);
+  result.needed = only_guesses ? std::min(kNeeded, result.views) : kNeeded;
   const auto add = [&](const Pose2& T_target_query, const std::string& found_by) {
     MapPlacement placement = search.weigh(T_target_query);
     placement.found_by = found_by;

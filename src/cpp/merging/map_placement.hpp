@@ -28,7 +28,7 @@ struct MapPlacement {
 struct MapSearch {
   std::vector<MapPlacement> placements;  ///< apart from each other, the best first
   int views = 0;                         ///< that were looked for
-  int needed = 0;                        ///< views that must fit a placement that is believed
+  int needed = 0;  ///< views that must fit; of a very small map that is searched for there are not so many
 };
 
 /// Looks for map b on map a. `guesses` are tried, too: placements of which T_a_b and found_by are set. With

@@ -14,7 +14,8 @@
 namespace oort {
 namespace {
 
-constexpr const char* kDock = "dock";
+constexpr const char* kDock = "dock";  // the namespace of docks, and how a placement was found
+constexpr const char* kGiven = "given";
 constexpr double kSameDock = 0.5;  // [m] between docks that are one
 constexpr int kMaxDockPairs = 9;   // that are tried
 
@@ -61,7 +62,7 @@ std::vector<MapPlacement> dock_guesses(const Map& a, const Map& b) {
       if (of_a.name_space != kDock || of_b.name_space != kDock || guesses.size() == kMaxDockPairs) continue;
       MapPlacement guess;
       guess.T_a_b = pose_of(a, of_a) * inverse(pose_of(b, of_b));
-      guess.found_by = "dock";
+      guess.found_by = kDock;
       guesses.push_back(guess);
     }
   }
@@ -77,13 +78,24 @@ bool is_believed(const MapPlacement& p, const MapSearch& search) {
   return p.fits >= search.needed && p.fits >= kFitsPerContradiction * p.contradicts;
 }
 
+[[noreturn]] void refuse(const MapSearch& search) {
+  const bool given = !search.placements.empty() && search.placements.front().found_by == kGiven;
+  const std::string best = search.placements.empty() ? "nothing fits" : evidence(search.placements.front(), search);
+  if (given) {
+    throw InputError("merge: the second map does not fit the first at the place that was given (" + best +
+                     "); check X Y THETA: where the second map's origin lies on the first, in metres and radians");
+  }
+  if (search.views < search.needed) {
+    throw InputError("merge: the smaller map shows too little to be searched for: " + std::to_string(search.views) +
+                     " places apart, and " + std::to_string(search.needed) + " are needed" + kWhatToDo);
+  }
+  throw InputError("merge: no place where the second map fits the first was found (at the best place " + best + ")" +
+                   kWhatToDo);
+}
+
 /// The best placement. One at the docks counts as much as a better one elsewhere, where both fit about as well.
 MapPlacement chosen(const MapSearch& search) {
-  if (search.placements.empty() || !is_believed(search.placements.front(), search)) {
-    const std::string best =
-        search.placements.empty() ? "" : " (at the best place " + evidence(search.placements.front(), search) + ")";
-    throw InputError("merge: no place where the second map fits the first was found" + best + kWhatToDo);
-  }
+  if (search.placements.empty() || !is_believed(search.placements.front(), search)) refuse(search);
   std::vector<MapPlacement> rivals;
   for (const MapPlacement& placement : search.placements) {
     if (placement.score() > kAmbiguous * search.placements.front().score()) rivals.push_back(placement);
@@ -105,7 +117,7 @@ MapPlacement place(const Map& a, const Map& b, const Parameters& parameters, con
   if (T_a_b) {
     MapPlacement given;
     given.T_a_b = *T_a_b;
-    given.found_by = "given";
+    given.found_by = kGiven;
     guesses = {given};
   }
   const MapSearch search = find_placements(a, b, parameters, guesses, T_a_b.has_value());
