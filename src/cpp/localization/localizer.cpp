@@ -38,11 +38,18 @@ constexpr double kRivalWay = 0.5, kRivalXy = 0.15, kRivalTheta = 0.1;
 
 constexpr double kLostFactor = 3.0;  // of the way to uncertain
 
-// A match this far from what odometry expects is believed only if the views of the last metres do not fit worse there:
-// furniture that was moved can explain one scan at a wrong place, but not what was seen on the way to it.
-constexpr double kLeapXy = 0.15, kLeapTheta = 0.1;
-constexpr std::size_t kMemory = 12;       // views
-constexpr double kLeastOfMemory = -0.05;  // of the change of their support
+// A match so far from what odometry tells, since the last scan or in small steps over the last views, is believed only
+// if the views of the last metres do not fit much worse there: furniture that was moved can explain a scan at a wrong
+// place, but not what was seen on the way to it. Odometry drifts along many views, so there only a gross difference
+// counts.
+constexpr double kLeapXy = 0.15, kLeapTheta = 0.15;
+constexpr std::size_t kMemory = 12, kLeapViews = 6;    // views kept, and those over which odometry is compared
+constexpr double kMuchWorse = 0.05, kFarWorse = 0.35;  // of support
+
+// And after one that is a little off, above all where scans did not fit before, more way must fit before it is relied
+// on.
+constexpr double kSurpriseXy = 0.12, kSurpriseTheta = 0.1;
+constexpr int kFewScans = 3;
 
 OdometryModel model_of(const OdometryNoiseParameters& p) {
   return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
@@ -118,7 +125,7 @@ LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom
   const bool sees = count_returns(now.cloud) >= static_cast<std::size_t>(min_points_);
   if (T_map_sensor_ && sees) follow(now.cloud);
   state_ = judge();
-  const bool is_new_view = sees && views_.add(now);
+  const bool is_new_view = sees && views_.add(now, T_map_odom());
   if (state_ != LocalizationState::kTracking && is_new_view) search(now);
   return state_;
 }
@@ -157,11 +164,11 @@ void Localizer::follow(const PointCloud& cloud) {
     return;
   }
   ++statistics_.matched;
-  const bool leaps = is_seen_ && is_leap(*found);
+  const bool surprises = is_seen_ && is_surprise(*found);
   T_map_sensor_ = found->T_map_sensor;
   is_seen_ = true;
   covariance_ = floored(found->covariance);
-  probation_ = leaps ? parameters_.doubt_distance : probation_ - doubtful_way_;
+  probation_ = surprises ? parameters_.doubt_distance : probation_ - doubtful_way_;
   doubtful_way_ = 0.0;
   doubtful_scans_ = 0;
 }
@@ -184,7 +191,7 @@ std::optional<Hypothesis> Localizer::match(const PointCloud& cloud, std::string&
     refusal = "low support";
   else if (!is_expected(found))
     refusal = "unexpected";
-  else if (is_leap(found) && contradicts_memory(found))
+  else if (contradicts_memory(found))
     refusal = "contradicts earlier views";
   return refusal.empty() ? std::optional<Hypothesis>(found) : std::nullopt;
 }
@@ -195,15 +202,21 @@ bool Localizer::is_expected(const Hypothesis& found) const {
   return d.dot(floored(covariance_).ldlt().solve(d)) <= kGate;
 }
 
-bool Localizer::is_leap(const Hypothesis& found) const {
+bool Localizer::is_surprise(const Hypothesis& found) const {
   const Pose2 moved = between(*T_map_sensor_, found.T_map_sensor);
-  return moved.translation().norm() > kLeapXy || std::abs(moved.theta) > kLeapTheta;
+  return moved.translation().norm() > kSurpriseXy ||
+         (doubtful_scans_ >= kFewScans && std::abs(moved.theta) > kSurpriseTheta);
 }
 
 bool Localizer::contradicts_memory(const Hypothesis& found) const {
   const Pose2 T_sensor_odom = inverse(*T_odom_sensor_);
-  const double here = views_.weigh(*map_, *T_map_sensor_ * T_sensor_odom).value();
-  return views_.weigh(*map_, found.T_map_sensor * T_sensor_odom).value() < here + kLeastOfMemory;
+  const Pose2 now = *T_map_sensor_ * T_sensor_odom;
+  const auto worse_than = [&](const Pose2& T_map_odom) {
+    const Pose2 moved = between(T_map_odom * *T_odom_sensor_, found.T_map_sensor);
+    if (moved.translation().norm() < kLeapXy && std::abs(moved.theta) < kLeapTheta) return 0.0;
+    return views_.weigh(*map_, T_map_odom).value() - views_.weigh(*map_, found.T_map_sensor * T_sensor_odom).value();
+  };
+  return worse_than(now) > kMuchWorse || worse_than(views_.T_map_odom_before(kLeapViews).value_or(now)) > kFarWorse;
 }
 
 void Localizer::search(const PlacedScan& scan) {
@@ -216,6 +229,7 @@ void Localizer::search(const PlacedScan& scan) {
   if (!T_map_sensor_ || !is_expected(*found.best)) {
     if (!may_jump(*found.best, scan)) return;
     if (T_map_sensor_) ++statistics_.jumps;
+    views_.forget_beliefs();
     probation_ = parameters_.doubt_distance;
   }
   rival_.reset();

@@ -77,7 +77,7 @@ class Localizer {
   std::optional<Hypothesis> match(const PointCloud& cloud, std::string& refusal);
   bool may_jump(const Hypothesis& found, const PlacedScan& scan);
   bool is_expected(const Hypothesis& found) const;
-  bool is_leap(const Hypothesis& found) const;
+  bool is_surprise(const Hypothesis& found) const;
   bool contradicts_memory(const Hypothesis& found) const;
   void search(const PlacedScan& scan);
   LocalizationState judge() const;
