@@ -45,6 +45,13 @@ TEST(Relocalizer, JoinsScansByOdometryAndAnswersForTheNewest) {
   EXPECT_LT(between({-0.8, 1.7, 0.2}, found.best->T_map_sensor).translation().norm(), 0.03);
 }
 
+TEST(Relocalizer, LooksAtNoPlaceThatScoresLess) {
+  Parameters parameters;
+  parameters.loop_closure_graph_builder.branch_and_bound_matcher.global_localization_min_score = 0.999;
+  const Relocalizer strict(reference_of(make_room(), views_of_room()), parameters);
+  EXPECT_EQ(strict.find({placed(make_room(), {-0.8, 1.7, 0.2})}).status, RelocalizationStatus::kNoMatch);
+}
+
 TEST(Relocalizer, RefusesToChooseBetweenTwoRoomsThatLookAlike) {
   const Pose2 T_first_second{12.0, 1.0, 0.5};
   const testing::World world = testing::joined(make_room(), testing::moved(make_room(), T_first_second));

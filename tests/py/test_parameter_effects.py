@@ -73,18 +73,25 @@ CARTOGRAPHER: tuple[dict[str, str | float | bool], ...] = (
 )
 """The same for the parameters of Cartographer's matchers."""
 
+
+
+def of_localization(entry: ParameterEntry) -> bool:
+    """Whether it tells of localisation on a saved map, not of mapping."""
+    return entry.path.startswith("localization.") or entry.path.endswith(".global_localization_min_score")
+
+
 USED = [
     entry
     for entry in parameter_table()
     if not entry.path.endswith((".num_threads", ".branch_and_bound_depth"))  # the result is the same
     and entry.status == "used"
     and entry.path not in OF_THE_NODE | OF_BAGS | RARE
-    and not entry.path.startswith("localization.")
+    and not of_localization(entry)
     and (not entry.choices or len(entry.choices) > 1)
 ]
 
 
-LOCALIZING = [entry for entry in parameter_table() if entry.path.startswith("localization.") and entry.path not in RARE]
+LOCALIZING = [entry for entry in parameter_table() if of_localization(entry) and entry.path not in RARE]
 
 
 @pytest.fixture(scope="module")

@@ -38,6 +38,19 @@ constexpr double kRivalWay = 0.5, kRivalXy = 0.15, kRivalTheta = 0.1;
 
 constexpr double kLostFactor = 3.0;  // of the way to uncertain
 
+// A match so far from what odometry tells, since the last scan or in small steps over the last views, is believed only
+// if the views of the last metres do not fit much worse there: furniture that was moved can explain a scan at a wrong
+// place, but not what was seen on the way to it. Odometry drifts along many views, so there only a gross difference
+// counts.
+constexpr double kLeapXy = 0.15, kLeapTheta = 0.15;
+constexpr std::size_t kMemory = 12, kLeapViews = 6;    // views kept, and those over which odometry is compared
+constexpr double kMuchWorse = 0.05, kFarWorse = 0.35;  // of support
+
+// And after one that is a little off, above all where scans did not fit before, more way must fit before it is relied
+// on.
+constexpr double kSurpriseXy = 0.12, kSurpriseTheta = 0.1;
+constexpr int kFewScans = 3;
+
 OdometryModel model_of(const OdometryNoiseParameters& p) {
   return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
           p.rotation_per_radian,   p.translation_floor,      p.rotation_floor};
@@ -73,7 +86,9 @@ Localizer::Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& 
       T_base_sensor_(T_base_sensor),
       odometry_model_(model_of(parameters.incremental_graph_builder.odometry_noise)),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
-      relocalizer_(map_, parameters) {
+      relocalizer_(map_, parameters),
+      views_(kept_parameters_.scan_distance, kept_parameters_.scan_angle,
+             std::max(kMemory, static_cast<std::size_t>(kept_parameters_.max_scans))) {
   if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
 }
 
@@ -95,7 +110,7 @@ void Localizer::start_searching() {
   is_seen_ = false;
   rival_.reset();
   probation_ = 0.0;
-  kept_.clear();
+  views_.clear();
   doubtful_way_ = 0.0;
   doubtful_scans_ = 0;
   state_ = LocalizationState::kSearching;
@@ -114,7 +129,7 @@ LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom
   const bool sees = count_returns(now.cloud) >= static_cast<std::size_t>(min_points_);
   if (T_map_sensor_ && sees) follow(now.cloud);
   state_ = judge();
-  const bool is_new_view = sees && keep(now);
+  const bool is_new_view = sees && views_.add(now, T_map_odom());
   if (state_ != LocalizationState::kTracking && is_new_view) search(now);
   return state_;
 }
@@ -153,10 +168,11 @@ void Localizer::follow(const PointCloud& cloud) {
     return;
   }
   ++statistics_.matched;
+  const bool surprises = is_seen_ && is_surprise(*found);
   T_map_sensor_ = found->T_map_sensor;
   is_seen_ = true;
   covariance_ = floored(found->covariance);
-  probation_ -= doubtful_way_;
+  probation_ = surprises ? parameters_.doubt_distance : probation_ - doubtful_way_;
   doubtful_way_ = 0.0;
   doubtful_scans_ = 0;
 }
@@ -179,6 +195,8 @@ std::optional<Hypothesis> Localizer::match(const PointCloud& cloud, std::string&
     refusal = "low support";
   else if (!is_expected(found))
     refusal = "unexpected";
+  else if (contradicts_memory(found))
+    refusal = "contradicts earlier views";
   return refusal.empty() ? std::optional<Hypothesis>(found) : std::nullopt;
 }
 
@@ -188,22 +206,26 @@ bool Localizer::is_expected(const Hypothesis& found) const {
   return d.dot(floored(covariance_).ldlt().solve(d)) <= kGate;
 }
 
-bool Localizer::keep(const PlacedScan& scan) {
-  if (!kept_.empty()) {
-    const Pose2 moved = between(kept_.back().T_odom_sensor, scan.T_odom_sensor);
-    if (moved.translation().norm() < kept_parameters_.scan_distance &&
-        std::abs(moved.theta) < kept_parameters_.scan_angle) {
-      return false;
-    }
-  }
-  if (kept_.size() >= static_cast<std::size_t>(kept_parameters_.max_scans)) kept_.erase(kept_.begin());
-  kept_.push_back(scan);
-  return true;
+bool Localizer::is_surprise(const Hypothesis& found) const {
+  const Pose2 moved = between(*T_map_sensor_, found.T_map_sensor);
+  return moved.translation().norm() > kSurpriseXy ||
+         (doubtful_scans_ >= kFewScans && std::abs(moved.theta) > kSurpriseTheta);
+}
+
+bool Localizer::contradicts_memory(const Hypothesis& found) const {
+  const Pose2 T_sensor_odom = inverse(*T_odom_sensor_);
+  const Pose2 now = *T_map_sensor_ * T_sensor_odom;
+  const auto worse_than = [&](const Pose2& T_map_odom) {
+    const Pose2 moved = between(T_map_odom * *T_odom_sensor_, found.T_map_sensor);
+    if (moved.translation().norm() < kLeapXy && std::abs(moved.theta) < kLeapTheta) return 0.0;
+    return views_.weigh(*map_, T_map_odom).value() - views_.weigh(*map_, found.T_map_sensor * T_sensor_odom).value();
+  };
+  return worse_than(now) > kMuchWorse || worse_than(views_.T_map_odom_before(kLeapViews).value_or(now)) > kFarWorse;
 }
 
 void Localizer::search(const PlacedScan& scan) {
   ++statistics_.searches;
-  const Relocalization found = relocalizer_.find(kept_);
+  const Relocalization found = relocalizer_.find(views_.latest(static_cast<std::size_t>(kept_parameters_.max_scans)));
   if (found.status != RelocalizationStatus::kFound) {
     ++statistics_.search_refusals[std::string(to_string(found.status))];
     return;
@@ -211,6 +233,7 @@ void Localizer::search(const PlacedScan& scan) {
   if (!T_map_sensor_ || !is_expected(*found.best)) {
     if (!may_jump(*found.best, scan)) return;
     if (T_map_sensor_) ++statistics_.jumps;
+    views_.forget_beliefs();
     probation_ = parameters_.doubt_distance;
   }
   rival_.reset();

@@ -9,12 +9,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/geometry/sweep.hpp"
 #include "oort/localization/reference_map.hpp"
 #include "oort/localization/relocalizer.hpp"
+#include "oort/localization/view_memory.hpp"
 #include "oort/mapping/odometry_model.hpp"
 
 namespace oort {
@@ -79,7 +79,8 @@ class Localizer {
   std::optional<Hypothesis> match(const PointCloud& cloud, std::string& refusal);
   bool may_jump(const Hypothesis& found, const PlacedScan& scan);
   bool is_expected(const Hypothesis& found) const;
-  bool keep(const PlacedScan& scan);
+  bool is_surprise(const Hypothesis& found) const;
+  bool contradicts_memory(const Hypothesis& found) const;
   void search(const PlacedScan& scan);
   LocalizationState judge() const;
   double deviation() const;
@@ -93,6 +94,7 @@ class Localizer {
   OdometryModel odometry_model_;
   frsm::Matcher matcher_;
   Relocalizer relocalizer_;
+  ViewMemory views_;
 
   LocalizationState state_ = LocalizationState::kSearching;
   std::optional<Pose2> T_map_sensor_;
@@ -105,7 +107,6 @@ class Localizer {
   std::optional<Rival> rival_;
   double doubtful_way_ = 0.0;  // [m] since the last match that was believed
   int doubtful_scans_ = 0;
-  std::vector<PlacedScan> kept_;  // for the search, oldest first
   LocalizationStatistics statistics_;
 };
 

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kSearchVoxel = 0.1;                          // [m] of the points that are looked for everywhere
 constexpr double kMatchVoxel = 0.05;                          // [m] of those that are matched around each peak
-constexpr double kMinScore = 0.35;                            // of a peak on the coarse table
 constexpr double kPeakRatio = 0.75;                           // of the best peak's score
 constexpr double kApart = 0.3;                                // [m] and [rad] between two places
 constexpr double kFineReach = 0.1;                            // [m] around a peak
@@ -92,6 +91,7 @@ std::string_view to_string(RelocalizationStatus status) {
 Relocalizer::Relocalizer(std::shared_ptr<const ReferenceMap> map, const Parameters& parameters)
     : map_(std::move(map)),
       parameters_(parameters.localization.relocalizer),
+      min_score_(parameters.loop_closure_graph_builder.branch_and_bound_matcher.global_localization_min_score),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
 
 Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
@@ -126,7 +126,7 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   const double half_x = 0.5 * limits.width * limits.resolution;
   const double half_y = 0.5 * limits.height * limits.resolution;
   frsm::PeakParams search;
-  search.floor = kMinScore;
+  search.floor = min_score_;
   search.ratio = kPeakRatio;
   search.apart_xy = search.apart_theta = kApart;
   const frsm::Points sparse = one_per_cell(points, kSearchVoxel);

@@ -61,6 +61,7 @@ class Relocalizer {
 
   std::shared_ptr<const ReferenceMap> map_;
   RelocalizerParameters parameters_;
+  double min_score_;  // of a peak on the coarse table
   frsm::Matcher matcher_;
 };
 

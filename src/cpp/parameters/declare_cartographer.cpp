@@ -145,8 +145,8 @@ void declare_branch_and_bound_matcher(const Section& v, BranchAndBoundMatcherPar
   v(p.submap_min_neighborhood_size, "submap_min_neighborhood_size", {3, "nodes", {1, 10000}},
     "Candidates with a smaller submap are refused.");
   v(p.global_localization_min_score, "global_localization_min_score", {0.21, "fraction", {0.0, 1.0}},
-    "Least score of a match without a guess.")
-      .later();
+    "Least score of a match without a guess, that is of a place that the relocaliser looks at: the mean of the coarse "
+    "table under its points.");
   v(p.min_score, "min_score", {0.55, "fraction", {0.0, 1.0}},
     "Least score of a match: the mean probability of the cells under its points, unknown ones counting 0.1.");
   v(p.search_window_sigmas, "search_window_sigmas", {4.0, "standard deviations", {0.0, 100.0}},

@@ -16,11 +16,12 @@ import genpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from oort.live.window import Spread
-from oort.ros.diagnostics import Health, diagnostic_array
+from oort.ros.diagnostics import diagnostic_array
+from oort.ros.health import MappingHealth
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 STAMP = genpy.Time(12, 34)
-WELL = Health(
+WELL = MappingHealth(
     state="mapping",
     path="/home/me/map",
     queue_size=1,
@@ -64,7 +65,7 @@ EMPTY = replace(
 )
 
 
-def status(health: Health) -> Any:
+def status(health: MappingHealth) -> Any:
     message = diagnostic_array(health, "/oort_slam", STAMP)
     assert message.header.stamp == STAMP
     (only,) = message.status
@@ -181,7 +182,7 @@ def test_a_failed_save_is_told_in_every_state_and_first() -> None:
 
 spreads = st.none() | st.builds(Spread, *[st.floats(0, 1e5)] * 3)
 healths = st.builds(
-    Health,
+    MappingHealth,
     state=st.sampled_from(["not_mapping", "mapping", "paused"]),
     drops=st.dictionaries(st.text(max_size=20), st.integers(0, 10**9), max_size=4),
     ms_per_scan=spreads,
@@ -192,7 +193,7 @@ healths = st.builds(
 
 
 @given(health=healths)
-def test_any_health_can_be_sent(health: Health) -> None:
+def test_any_health_can_be_sent(health: MappingHealth) -> None:
     sent = diagnostic_array(health, "/oort_ros_mapping", STAMP)
     buffer = io.BytesIO()
     sent.serialize(buffer)

@@ -15,6 +15,7 @@ import pytest
 
 pytest.importorskip("rospy")
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid
 from oort_msgs.srv import GetBool, SetString
@@ -26,7 +27,7 @@ from oort import Parameters, Session, save_map
 from oort.poses import between, compose
 from oort.recording import Scan
 from oort.ros.messages import rotation, yaw
-from ros.client import Client, until
+from ros.client import Client, Heard, figures, until
 from ros.robot import COURSE, Localiser, Robot
 from ros.running import Core, Node
 
@@ -143,6 +144,25 @@ def test_it_finds_the_robot_and_follows_it(ros: Core, tmp_path: Path, base: str,
     saved = json.loads(Path(f"{base}.last_pose.json").read_text())
     assert np.hypot(*between(compose(truth, COURSE.T_base_laser), saved["T_map_sensor"])[:2]) < 0.06
     Path(f"{base}.last_pose.json").unlink()
+
+
+def test_it_tells_how_it_goes(ros: Core, tmp_path: Path, base: str) -> None:
+    with localizer(ros, tmp_path, f"_map:={base}", "_start:=dock") as node, Robot(COURSE) as robot:
+        robot.wait_for_node(f"/{NAME}")
+        with Heard("/diagnostics", DiagnosticArray, f"/{NAME}") as told:
+            told.wait_for(lambda message: message.status[0].level == DiagnosticStatus.WARN, "it misses the scans")
+            assert told.messages[0].status[0].message.startswith("No scan has come on /scan; start the laser")
+            robot.laser_on = True
+            well = told.wait_for(lambda message: message.status[0].message == "Tracking", "all is well")
+            assert (well.status[0].level, well.status[0].name) == (DiagnosticStatus.OK, f"{NAME}: localisation")
+            values = figures(well)
+            assert (values["state"], values["map"], values["jumps"]) == ("tracking", base, "0")
+            assert float(values["support"]) > 0.8
+            assert 0.0 < float(values["position deviation [m]"]) < 0.1
+            assert int(values["scans matched"]) > 0
+            with Localiser(COURSE.T_map_odom):
+                told.wait_for(lambda message: figures(message)["map -> odom told by another"] == "yes", "it is silent")
+        assert "Traceback" not in node.output
 
 
 def test_it_begins_at_the_dock(ros: Core, tmp_path: Path, base: str, ears: Ears) -> None:

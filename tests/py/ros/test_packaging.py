@@ -153,6 +153,7 @@ def test_launch_files_name_the_node(ros: Core) -> None:
     assert launch_nodes(ros, "oort.launch") == ["/oort_slam"]
     assert launch_nodes(ros, "oort.launch", "node:=mapper") == ["/mapper"]
     assert launch_nodes(ros, "oort_ros_mapping.launch") == ["/oort_ros_mapping"]
+    assert launch_nodes(ros, "localizer.launch", "map:=/maps/7") == ["/oort_localizer"]
     assert launch_nodes(ros, "rviz.launch") == ["/oort_rviz"]
 
 
@@ -161,6 +162,8 @@ def test_launch_files_run_the_program(ros: Core) -> None:
     assert f"{program} scan:=scan " in launch_command(ros, "/oort_slam", "oort.launch")
     kuri = launch_command(ros, "/oort_ros_mapping", "oort_ros_mapping.launch")
     assert f"nice -n 10 {program} scan:=scan_reduced_mapping " in kuri
+    localizer = launch_command(ros, "/oort_localizer", "localizer.launch", "map:=/maps/7", "scan:=near")
+    assert f"{SHARE}/oort/oort_localizer scan:=near " in localizer
 
 
 @pytest.mark.skipif(shutil.which("rviz") is None, reason="rviz is not installed")
@@ -180,4 +183,8 @@ def test_launch_files_set_only_the_parameters_that_are_given(ros: Core) -> None:
         "/oort_slam/events_log: /log.json",
         "/oort_slam/load: /maps/7",
         "/oort_slam/params: '12'",  # a path, whatever it looks like
+    ]
+    assert parameters("localizer.launch", "map:=7").splitlines() == [
+        "/oort_localizer/map: '7'",
+        "/oort_localizer/start: auto",
     ]

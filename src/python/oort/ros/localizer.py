@@ -2,12 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """``rosrun oort oort_localizer``: tells where the robot is on a saved map while nothing is being mapped."""
 
-import json
 import sys
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 try:
     import rospy
@@ -19,6 +17,7 @@ except ImportError as error:
     )
 
 import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid
 from numpy.typing import NDArray
@@ -30,21 +29,25 @@ from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 from oort._core import Map, Parameters, load_map, normalise_map_path, render_map
 from oort.errors import InputError, OortError, StateError
 from oort.export.files import write_atomically
-from oort.live.inbox import CallItem, Inbox, ScanItem
+from oort.live.figures import Figures
+from oort.live.inbox import UNUSABLE, CallItem, Inbox, ScanItem
 from oort.live.snapshot import odom_pose_of
 from oort.localization import Localizer, ReferenceMap, start_covariance, start_pose
 from oort.poses import between, compose
 from oort.recording import Pose, Scan
+from oort.ros.diagnostics import diagnostic_array
 from oort.ros.laser import Laser
+from oort.ros.last_pose import LastPose
+from oort.ros.localizer_health import LocalizerHealth, Sighting
 from oort.ros.messages import grid_message, rotation, transform, yaw
-from oort.ros.running import run_node
+from oort.ros.running import repeat, run_node
 from oort.ros.settings import read_private
 from oort.ros.transforms import Transforms, frame
 
 _TF_PERIOD = 0.05  # [s]
+_HEALTH_PERIOD = 1.0  # [s]
 _IDLE = 0.2  # [s] between looks at whether the node is to end
 _SAVE_PERIOD = 10.0  # [s] between savings of the pose
-_LAST_POSE = ".last_pose.json"  # after the map's base path
 _STARTS = ("auto", "global", "dock", "last")
 
 
@@ -68,12 +71,14 @@ class LocalizerNode:
         self._seed: tuple[Pose, NDArray[np.float64]] | None = None  # T_map_sensor, until the laser's mount is known
         self._localizer: Localizer | None = None
         self._reported_frame: Pose | None = None  # seen from the frame of the latest scan's odometry
+        self._last = Sighting()
+        self._figures = Figures()
         self._load(base)
 
         self._maps = [rospy.Publisher(topic, OccupancyGrid, queue_size=1, latch=True) for topic in _MAPS]
         self._pose = rospy.Publisher("~pose", PoseWithCovarianceStamped, queue_size=10)
         self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
-        self._told_state = ""
+        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
         self._broadcaster = tf2_ros.TransformBroadcaster()
         self._inbox = Inbox()
         self._transforms = Transforms(parameters, self._inbox.poke)
@@ -81,19 +86,21 @@ class LocalizerNode:
         self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
         self._begin(start)
         self._show_map()
-        rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
+        self._scans = rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
         if parameters.get("use_imu"):
             rospy.Subscriber("imu", Imu, self._transforms.add_imu, tcp_nodelay=True)
         rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_initial_pose)
         self._worker = threading.Thread(target=self._work, name="oort-localize", daemon=True)
         self._worker.start()
-        threading.Thread(target=self._repeat_tf, daemon=True).start()
+        for period, work in ((_TF_PERIOD, self._tell_tf), (_HEALTH_PERIOD, self._tell_health)):
+            threading.Thread(target=repeat, args=(period, work), daemon=True).start()
         rospy.Service("~map/load", srv.SetString, self._answer("load", srv.SetStringResponse))
         rospy.Service("~relocalize", Empty, self._answer("relocalize", EmptyResponse))
-        rospy.Service("~is_localized", srv.GetBool, lambda _: srv.GetBoolResponse(self._told_state == "tracking"))
+        rospy.Service("~is_localized", srv.GetBool, lambda _: srv.GetBoolResponse(self._last.state == "tracking"))
 
     def close(self) -> None:
         """Saves the pose and ends the thread."""
+        self._scans.unregister()
         self._closing = True
         self._inbox.wake()
         self._worker.join()
@@ -107,7 +114,9 @@ class LocalizerNode:
         self._reference = ReferenceMap(map_, self._parameters)
         self._map: Map = map_
         self._base = normalise_map_path(base)
+        self._last_pose = LastPose(self._base)
         self._localizer = None
+        self._last = Sighting()
 
     def _show_map(self) -> None:
         stamp = rospy.Time.now()
@@ -121,41 +130,25 @@ class LocalizerNode:
         if start == "dock":
             self._seed = start_pose(self._map, self._parameters, "dock"), start_covariance()
         elif start in ("auto", "last"):
-            pose = self._read_pose()
+            pose = self._last_pose.read()
             if pose is None and start == "last":
-                raise InputError(f"{self._base + _LAST_POSE}: there is no last pose; start another way")
+                raise InputError(f"{self._last_pose.path}: there is no last pose; start another way")
             self._seed = None if pose is None else (pose, start_covariance())
-
-    def _read_pose(self) -> Pose | None:
-        path = Path(self._base + _LAST_POSE)
-        try:
-            x, y, theta = map(float, json.loads(path.read_text(encoding="utf-8"))["T_map_sensor"])
-        except FileNotFoundError:
-            return None
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            rospy.logwarn("%s cannot be used: %s", path, error)
-            return None
-        return x, y, theta
 
     def _save_pose(self) -> None:
         """Keeps the pose for the next start, if it can be relied on."""
-        localizer = self._localizer
-        if localizer is None or localizer.state != "tracking" or localizer.T_map_sensor is None:
-            return
-        text = json.dumps({"T_map_sensor": localizer.T_map_sensor}) + "\n"
-        try:
-            write_atomically(Path(self._base + _LAST_POSE), text.encode())
-        except OortError as error:
-            rospy.logwarn_once("the pose is not kept for the next start: %s", error)
+        if self._last.state == "tracking" and self._last.T_map_sensor is not None:
+            self._last_pose.write(self._last.T_map_sensor)
 
     # ---- what comes in ----
 
     def _on_scan(self, message: LaserScan) -> None:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
+        self._figures.arrived()
         self._inbox.add_scan(*self._laser.resolve_later(message, sensor_frame, time.monotonic()))
 
     def _laser_found(self, frame: str, mount: Pose) -> None:
-        self._mount = mount
+        self._mount, self._sensor_frame = mount, frame
 
     def _on_initial_pose(self, message: PoseWithCovarianceStamped) -> None:
         """T_map_base from a person: RViz's "2D Pose Estimate"."""
@@ -192,7 +185,7 @@ class LocalizerNode:
             try:
                 self._take(item) if isinstance(item, ScanItem) else self._make(item)
             except Exception as error:  # whatever is wrong with one, the others go on
-                rospy.logwarn_throttle(_SAVE_PERIOD, f"a scan is left out: {error}")
+                self._leave_out(UNUSABLE, str(error) or repr(error))
             self._inbox.pop()
             if time.monotonic() > self._saved + _SAVE_PERIOD:
                 self._saved = time.monotonic()
@@ -200,8 +193,9 @@ class LocalizerNode:
 
     def _take(self, item: ScanItem) -> None:
         if item.scan is None:
-            rospy.logwarn_throttle(_SAVE_PERIOD, f"a scan is left out: {item.why}")
+            self._leave_out(item.refused, item.why)
             return
+        started = time.monotonic()
         scan, mount = item.scan, self._mount
         assert mount is not None  # what resolved the scan has set it
         if self._localizer is None:
@@ -212,7 +206,15 @@ class LocalizerNode:
         localizer = self._localizer
         localizer.add_scan(*scan.arguments)
         self._reported_frame = scan.reported_frame
-        self._tell(scan, mount)
+        before, self._last = self._last.state, Sighting.of(localizer)
+        self._figures.mapped(None, time.monotonic() - started)
+        self._tell(scan, mount, before)
+        self._figures.delays.add(1e3 * (time.monotonic() - item.arrived))
+
+    def _leave_out(self, reason: str, why: str) -> None:
+        told = self._figures.drops.add(reason, why)
+        if told:
+            rospy.logwarn("%s", told)
 
     def _make(self, item: CallItem) -> None:
         try:
@@ -240,31 +242,28 @@ class LocalizerNode:
 
     # ---- what goes out ----
 
-    def _tell(self, scan: Scan, mount: Pose) -> None:
-        localizer = self._localizer
-        assert localizer is not None
-        if localizer.state != self._told_state:
-            self._told_state = localizer.state
-            rospy.loginfo("%s (support %.2f)", localizer.state, localizer.support)
-            self._state.publish(localizer.state)
-        if localizer.T_map_odom is None:
+    def _tell(self, scan: Scan, mount: Pose, before: str) -> None:
+        last = self._last
+        if last.state != before:
+            rospy.loginfo("%s (support %.2f)", last.state, last.support)
+            self._state.publish(last.state)
+        if last.T_map_odom is None or last.covariance is None:
             return
         self._tell_tf()
         message = PoseWithCovarianceStamped()
         message.header.frame_id, message.header.stamp = self._map_frame, rospy.Time.from_sec(scan.time)
-        x, y, theta = compose(localizer.T_map_odom, scan.odometry).tolist()
+        x, y, theta = compose(last.T_map_odom, scan.odometry).tolist()
         message.pose.pose.position.x, message.pose.pose.position.y = x, y
         message.pose.pose.orientation = rotation(theta)
         full = np.zeros((6, 6))
-        full[np.ix_([0, 1, 5], [0, 1, 5])] = _of_base(localizer.covariance, theta, mount)
+        full[np.ix_([0, 1, 5], [0, 1, 5])] = _of_base(last.covariance, theta, mount)
         message.pose.covariance = full.ravel().tolist()
         self._pose.publish(message)
 
     def _tell_tf(self) -> None:
         """map -> odom, dated one period ahead; nothing while lost, or while another program tells it."""
         with self._tf_lock:
-            localizer = self._localizer
-            pose = None if localizer is None or localizer.state == "lost" else localizer.T_map_odom
+            pose = None if self._last.state == "lost" else self._last.T_map_odom
             stamp = rospy.Time.now() + rospy.Duration(_TF_PERIOD)
             if pose is None or stamp == self._last_tf or self._transforms.is_localised():
                 return
@@ -272,10 +271,28 @@ class LocalizerNode:
             pose = odom_pose_of(pose, self._reported_frame)
             self._broadcaster.sendTransform(transform(self._map_frame, self._odom_frame, stamp, pose))
 
-    def _repeat_tf(self) -> None:
-        while not rospy.is_shutdown() and not self._closing:
-            self._tell_tf()
-            time.sleep(_TF_PERIOD)
+    def _tell_health(self) -> None:
+        waiting, since = self._inbox.waiting()
+        figures = self._figures
+        health = LocalizerHealth(
+            queue_size=len(self._inbox),
+            scan_topic=self._scans.resolved_name,
+            scans_received=figures.scans_arrived,
+            scan_rate_hz=figures.scan_rate,
+            seconds_without_scan=figures.seconds_without_scan,
+            scans_processed=figures.scans_mapped,
+            drops=dict(figures.drops.counts),
+            drops_of_late=figures.drops.of_late(),
+            ms_per_scan=figures.milliseconds.spread,
+            delay_ms=figures.delays.spread,
+            waiting_scans=waiting,
+            seconds_waiting=since,
+            waiting_for=self._transforms.missing(self._sensor_frame),
+            map_path=self._base,
+            last=self._last,
+            told_by_other=self._transforms.is_localised(),
+        )
+        self._diagnostics.publish(diagnostic_array(health, rospy.get_name(), rospy.Time.now()))
 
 
 _MAPS = ("map", "map_cleaned")

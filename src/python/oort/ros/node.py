@@ -4,7 +4,6 @@
 
 import threading
 import time
-import traceback
 from collections.abc import Callable
 
 import rospy
@@ -26,13 +25,13 @@ from oort.ros.health import look_over
 from oort.ros.laser import Laser
 from oort.ros.markers import graph_markers
 from oort.ros.messages import grid_message, transform
+from oort.ros.running import COMPLAIN, repeat
 from oort.ros.services import Services
 from oort.ros.transforms import Transforms, frame
 
 _TF_PERIOD = 0.05  # [s]
 _QUEUE_PERIOD = 0.1  # [s]
 _HEALTH_PERIOD = 1.0  # [s]
-_COMPLAIN = 10.0  # [s] between two warnings about the same
 
 
 class Node(Listener):
@@ -68,7 +67,7 @@ class Node(Listener):
             (_QUEUE_PERIOD, self._tell_queue),
             (_HEALTH_PERIOD, self._tell_health),
         ):
-            threading.Thread(target=_repeat, args=(period, work), daemon=True).start()
+            threading.Thread(target=repeat, args=(period, work), daemon=True).start()
 
     def close(self) -> None:
         """Saves the map."""
@@ -156,9 +155,9 @@ class Node(Listener):
         waiting, since = self.live.inbox.waiting()
         missing = self._transforms.missing(self._sensor_frame)
         if waiting and since > _HEALTH_PERIOD:
-            rospy.logwarn_throttle(_COMPLAIN, f"{missing}; {waiting} scans waiting")
+            rospy.logwarn_throttle(COMPLAIN, f"{missing}; {waiting} scans waiting")
         if self._transforms.lacks_imu():
-            rospy.logwarn_throttle(_COMPLAIN, "no yaw rate on imu: odometry's own turns are used")
+            rospy.logwarn_throttle(COMPLAIN, "no yaw rate on imu: odometry's own turns are used")
         health = look_over(self.live, self._scans.resolved_name, missing)
         self._diagnostics.publish(diagnostic_array(health, rospy.get_name(), rospy.Time.now()))
 
@@ -184,15 +183,3 @@ class Node(Listener):
         if drawing is not None:
             places = [(space, id, pose) for (space, id), pose in self.live.snapshot.places.items()]
             publish(graph_markers(drawing.map, places, self._map_frame, rospy.Time.now()))
-
-
-def _repeat(period: float, work: Callable[[], None]) -> None:
-    """By the wall's clock: a timer of ROS stands still without /clock and dies when it is set back."""
-    while not rospy.is_shutdown():
-        started = time.monotonic()
-        try:
-            work()
-        except Exception:
-            if not rospy.is_shutdown():  # then the topics are closed
-                rospy.logerr_throttle(_COMPLAIN, traceback.format_exc())
-        time.sleep(max(0.0, period - (time.monotonic() - started)))

@@ -4,12 +4,17 @@
 
 import signal
 import threading
+import time
+import traceback
 from collections.abc import Callable
 from typing import Protocol
 
 import rospy
 
 from oort.errors import OortError
+
+COMPLAIN = 10.0
+"""[s] between two warnings about the same"""
 
 
 class Closable(Protocol):
@@ -39,3 +44,18 @@ def run_node(name: str, begin: Callable[[], Closable]) -> int:
     finally:
         rospy.signal_shutdown("the node ends")
     return 0
+
+
+def repeat(period: float, work: Callable[[], None]) -> None:
+    """Does something every so many seconds as long as the node runs.
+
+    By the wall's clock: a timer of ROS stands still without /clock and dies when it is set back.
+    """
+    while not rospy.is_shutdown():
+        started = time.monotonic()
+        try:
+            work()
+        except Exception:
+            if not rospy.is_shutdown():  # then the topics are closed
+                rospy.logerr_throttle(COMPLAIN, traceback.format_exc())
+        time.sleep(max(0.0, period - (time.monotonic() - started)))
