@@ -14,9 +14,8 @@ from oort.recording import Pose, Scan
 from oort.recording.laser_scan import seconds
 from oort.recording.motion import SNAPSHOT, beam_span
 from oort.ros.messages import to_scan
+from oort.ros.running import COMPLAIN
 from oort.ros.transforms import Transforms
-
-_COMPLAIN = 10.0  # [s] between two warnings
 
 
 class Laser:
@@ -61,7 +60,7 @@ class Laser:
         span = beam_span(len(message.ranges), message.time_increment) if self._compensates_motion else SNAPSHOT
         if span is None:
             rospy.logwarn_throttle(
-                _COMPLAIN,
+                COMPLAIN,
                 f"a time_increment of {message.time_increment} s cannot be: the beams are taken as measured at once",
             )
         return span or SNAPSHOT

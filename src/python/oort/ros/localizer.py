@@ -28,7 +28,6 @@ from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
 from oort._core import Map, Parameters, load_map, normalise_map_path, render_map
 from oort.errors import InputError, OortError, StateError
-from oort.export.files import write_atomically
 from oort.live.figures import Figures
 from oort.live.inbox import UNUSABLE, CallItem, Inbox, ScanItem
 from oort.live.snapshot import odom_pose_of
