@@ -202,6 +202,13 @@ def test_a_base_that_never_stands_keeps_its_own_turns(tmp_path: Path) -> None:
     assert any("never stood still" in note for note in recording.notes)
 
 
+def test_poses_out_of_order_are_left_out_and_counted(tmp_path: Path) -> None:
+    bag = with_gyro().tf(3.0, "odom", "base", (9.0, 9.0, 0.0))
+    recording = opened(bag, tmp_path, use_imu=True)
+    assert list(recording.scans())[1].odometry[:2] == pytest.approx((0.0, 0.0))
+    assert any(note.startswith("1 poses of odometry are not newer") for note in recording.notes)
+
+
 def test_a_simulated_gyro_mends_bad_turns(tmp_path: Path) -> None:
     drive = simulate_drive(2, SimulationConfig(minutes=0.0, odometry_error=10.0, gyro=True))
     write_bag(drive, tmp_path / "a.bag")

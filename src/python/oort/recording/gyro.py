@@ -92,7 +92,8 @@ def turned_by_gyro(
     odometry = GyroOdometry()
     turns = [(time, yaw_rate((x, y, z), axis or LEVEL)) for time, x, y, z in rates.tolist()]
     number = 0
-    for time, x, y, theta in np.frombuffer(link.samples, dtype=np.float64).reshape(-1, 4).tolist():
+    told = np.frombuffer(link.samples, dtype=np.float64).reshape(-1, 4).tolist()
+    for time, x, y, theta in told:
         while number < len(turns) and turns[number][0] <= time:
             odometry.add_gyro(*turns[number])
             number += 1
@@ -100,7 +101,10 @@ def turned_by_gyro(
     for turn in turns[number:]:
         odometry.add_gyro(*turn)
     odometry.flush()
-    return odometry.take(), notes + _notes(record, odometry)
+    poses = odometry.take()
+    if len(poses) < len(told):
+        notes.append(f"{len(told) - len(poses)} poses of odometry are not newer than the one before and were left out")
+    return poses, notes + _notes(record, odometry)
 
 
 def _notes(record: GyroRecord, odometry: GyroOdometry) -> list[str]:
