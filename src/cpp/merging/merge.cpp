@@ -3,6 +3,7 @@
 #include "oort/merging/merge.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
@@ -175,7 +176,6 @@ Merged merge_maps(const Map& a, const Map& b, const Parameters& parameters, cons
   mapper.set_map(std::move(joined));
   mapper.finish();
   merged.map = mapper.map();
-  merged.refinement = mapper.statistics().refinement;
   merged.across_kept = count_kept(merged.map.graph, merged.first_node_b);
   if (merged.across_kept < kLeastKept ||
       static_cast<double>(merged.across_kept) < kLeastKeptShare * static_cast<double>(merged.across.accepted)) {

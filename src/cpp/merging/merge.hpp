@@ -29,7 +29,6 @@ struct Merged {
   ClosureCounts across;            ///< closures from nodes of map b to nodes of map a
   std::uint64_t across_kept = 0;   ///< of the accepted ones: on at the last solution
   std::vector<DroppedLocation> dropped;
-  RefinementCounts refinement;
 };
 
 /// Joins two maps of the same home: map b's nodes become further chains of map a, in whose frame the result is, and
