@@ -71,7 +71,6 @@ CARTOGRAPHER: tuple[dict[str, str | float | bool], ...] = (
 """The same for the parameters of Cartographer's matchers."""
 
 
-
 def of_localization(entry: ParameterEntry) -> bool:
     """Whether it tells of localisation on a saved map, not of mapping."""
     return entry.path.startswith("localization.") or entry.path.endswith(".global_localization_min_score")
