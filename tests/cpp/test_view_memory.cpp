@@ -14,11 +14,11 @@ using testing::placed;
 
 TEST(ViewMemory, KeepsTheLatestScansThatShowSomethingNew) {
   ViewMemory memory(0.2, 0.4, 3);
-  EXPECT_TRUE(memory.add({{}, {0.0, 0.0, 0.0}}, {}));
-  EXPECT_FALSE(memory.add({{}, {0.15, 0.0, 0.3}}, {}));
-  EXPECT_TRUE(memory.add({{}, {0.15, 0.0, 0.45}}, {}));
-  EXPECT_TRUE(memory.add({{}, {0.4, 0.0, 0.45}}, {}));
-  EXPECT_TRUE(memory.add({{}, {0.7, 0.0, 0.45}}, {}));
+  EXPECT_TRUE(memory.add({{}, {0.0, 0.0, 0.0}}));
+  EXPECT_FALSE(memory.add({{}, {0.15, 0.0, 0.3}}));
+  EXPECT_TRUE(memory.add({{}, {0.15, 0.0, 0.45}}));
+  EXPECT_TRUE(memory.add({{}, {0.4, 0.0, 0.45}}));
+  EXPECT_TRUE(memory.add({{}, {0.7, 0.0, 0.45}}));
   EXPECT_EQ(memory.latest(5).size(), 3U);
   const std::vector<PlacedScan> two = memory.latest(2);
   ASSERT_EQ(two.size(), 2U);
@@ -28,25 +28,12 @@ TEST(ViewMemory, KeepsTheLatestScansThatShowSomethingNew) {
   EXPECT_TRUE(memory.latest(5).empty());
 }
 
-TEST(ViewMemory, KnowsWhatWasBelieved) {
-  ViewMemory memory(0.2, 0.4, 4);
-  EXPECT_FALSE(memory.T_map_odom_before(2));
-  for (int k = 0; k < 4; ++k) {
-    const double x = 0.3 * k;
-    memory.add({{}, {x, 0.0, 0.0}}, k == 0 ? std::nullopt : std::make_optional(Pose2{x, 1.0, 0.0}));
-  }
-  EXPECT_DOUBLE_EQ(memory.T_map_odom_before(2)->x, 0.6);
-  EXPECT_DOUBLE_EQ(memory.T_map_odom_before(9)->x, 0.3);
-  memory.forget_beliefs();
-  EXPECT_FALSE(memory.T_map_odom_before(9));
-}
-
 TEST(ViewMemory, AllViewsTellWhereOdometrysFrameIs) {
   const std::vector<Pose2> views = testing::views_of_room();
   const auto map = testing::reference_of(make_room(), views);
   const Pose2 T_odom_map{2.0, -1.0, 0.7};
   ViewMemory memory(0.1, 0.4, 12);
-  for (std::size_t k = 0; k < 6; ++k) memory.add(placed(make_room(), views[k], T_odom_map), {});
+  for (std::size_t k = 0; k < 6; ++k) memory.add(placed(make_room(), views[k], T_odom_map));
   EXPECT_GT(memory.weigh(*map, inverse(T_odom_map)).value(), 0.95);
   EXPECT_LT(memory.weigh(*map, Pose2{0.3, 0.1, 0.0} * inverse(T_odom_map)).value(), 0.5);
 }
