@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "localization_fixtures.hpp"
@@ -90,6 +91,20 @@ TEST(Localizer, IsFoundAgainAfterItWasCarriedAway) {
   EXPECT_TRUE(was_uncertain);
   EXPECT_EQ(localizer.state(), LocalizationState::kTracking);
   EXPECT_EQ(localizer.statistics().jumps, 1U);
+}
+
+TEST(Localizer, WhatWasSeenBeforeOutweighsScansThatFitSomewhereElse) {
+  Localizer localizer = localizer_of_room();
+  const std::vector<Pose2> truth = testing::laps(1.0);
+  localizer.start_at(truth.front() * kMount, kRoughly);
+  for (std::size_t k = 0; k < 90; ++k) {
+    const bool is_blind = k >= 50 && k < 80;  // odometry alone, which makes the search window wide
+    const Pose2 seen = k < 80 ? truth[k] : Pose2{0.25, 0.0, 0.0} * truth[k];
+    localizer.add_scan(see(is_blind ? testing::World{} : make_room(), seen * kMount, 0.0), truth[k]);
+    if (k == 79) EXPECT_GT(std::sqrt(localizer.covariance()(0, 0)), 0.08);
+  }
+  EXPECT_GT(localizer.statistics().match_refusals.at("contradicts earlier views"), 0U);
+  EXPECT_LT(between(truth[89] * kMount, *localizer.T_map_sensor()).translation().norm(), 0.05);
 }
 
 TEST(Localizer, AParkedRobotStaysWhereItIs) {

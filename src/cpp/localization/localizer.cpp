@@ -38,13 +38,12 @@ constexpr double kRivalWay = 0.5, kRivalXy = 0.15, kRivalTheta = 0.1;
 
 constexpr double kLostFactor = 3.0;  // of the way to uncertain
 
-// A match so far from what odometry tells, since the last scan or in small steps over the last views, is believed only
-// if the views of the last metres do not fit much worse there: furniture that was moved can explain a scan at a wrong
-// place, but not what was seen on the way to it. Odometry drifts along many views, so there only a gross difference
-// counts.
-constexpr double kLeapXy = 0.15, kLeapTheta = 0.15;
-constexpr std::size_t kMemory = 12, kLeapViews = 6;    // views kept, and those over which odometry is compared
-constexpr double kMuchWorse = 0.05, kFarWorse = 0.35;  // of support
+// A match so far from where odometry leads is believed only if the views of the last metres do not fit worse there:
+// furniture that was moved can explain a scan at a wrong place, but not what was seen on the way to it. Only the
+// position counts: cheap odometry turns too far by more than that without harm.
+constexpr double kLeap = 0.15;       // [m]
+constexpr std::size_t kMemory = 12;  // views
+constexpr double kMuchWorse = 0.05;  // of support
 
 // And after one that is a little off, above all where scans did not fit before, more way must fit before it is relied
 // on.
@@ -129,7 +128,7 @@ LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom
   const bool sees = count_returns(now.cloud) >= static_cast<std::size_t>(min_points_);
   if (T_map_sensor_ && sees) follow(now.cloud);
   state_ = judge();
-  const bool is_new_view = sees && views_.add(now, T_map_odom());
+  const bool is_new_view = sees && views_.add(now);
   if (state_ != LocalizationState::kTracking && is_new_view) search(now);
   return state_;
 }
@@ -213,14 +212,11 @@ bool Localizer::is_surprise(const Hypothesis& found) const {
 }
 
 bool Localizer::contradicts_memory(const Hypothesis& found) const {
-  const Pose2 T_sensor_odom = inverse(*T_odom_sensor_);
-  const Pose2 now = *T_map_sensor_ * T_sensor_odom;
-  const auto worse_than = [&](const Pose2& T_map_odom) {
-    const Pose2 moved = between(T_map_odom * *T_odom_sensor_, found.T_map_sensor);
-    if (moved.translation().norm() < kLeapXy && std::abs(moved.theta) < kLeapTheta) return 0.0;
-    return views_.weigh(*map_, T_map_odom).value() - views_.weigh(*map_, found.T_map_sensor * T_sensor_odom).value();
+  if (between(*T_map_sensor_, found.T_map_sensor).translation().norm() <= kLeap) return false;
+  const auto support_at = [&](const Pose2& T_map_sensor) {
+    return views_.weigh(*map_, T_map_sensor * inverse(*T_odom_sensor_)).value();
   };
-  return worse_than(now) > kMuchWorse || worse_than(views_.T_map_odom_before(kLeapViews).value_or(now)) > kFarWorse;
+  return support_at(found.T_map_sensor) < support_at(*T_map_sensor_) - kMuchWorse;
 }
 
 void Localizer::search(const PlacedScan& scan) {
@@ -233,7 +229,6 @@ void Localizer::search(const PlacedScan& scan) {
   if (!T_map_sensor_ || !is_expected(*found.best)) {
     if (!may_jump(*found.best, scan)) return;
     if (T_map_sensor_) ++statistics_.jumps;
-    views_.forget_beliefs();
     probation_ = parameters_.doubt_distance;
   }
   rival_.reset();

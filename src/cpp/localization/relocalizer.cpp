@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kSearchVoxel = 0.1;                          // [m] of the points that are looked for everywhere
 constexpr double kMatchVoxel = 0.05;                          // [m] of those that are matched around each peak
+constexpr double kLeastScore = 0.01;                          // that a peak can be asked for
 constexpr double kPeakRatio = 0.75;                           // of the best peak's score
 constexpr double kApart = 0.3;                                // [m] and [rad] between two places
 constexpr double kFineReach = 0.1;                            // [m] around a peak
@@ -126,7 +127,7 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   const double half_x = 0.5 * limits.width * limits.resolution;
   const double half_y = 0.5 * limits.height * limits.resolution;
   frsm::PeakParams search;
-  search.floor = min_score_;
+  search.floor = std::max(min_score_, kLeastScore);
   search.ratio = kPeakRatio;
   search.apart_xy = search.apart_theta = kApart;
   const frsm::Points sparse = one_per_cell(points, kSearchVoxel);
