@@ -76,6 +76,32 @@ TEST_F(MapperCallsTest, NotifyDockedSomewhereElseChangesNoPose) {
   EXPECT_EQ(mapper.statistics().docks.refused.size(), 1u);
 }
 
+TEST_F(MapperCallsTest, ADockClosureThatAllElseContradictsGoesOff) {
+  Parameters credulous;  // whatever the last nodes look like, they are at the dock
+  credulous.dock_graph_builder.dock_match_min_hit_pct = 0.0;
+  Mapper misled{credulous, kMount};
+  const std::vector<Pose2> way = laps(2.5);
+  drive(misled, world, way, odometry_of(way, 0.03, 0.02));
+  const Pose2 before = misled.sensor_pose();
+  EXPECT_TRUE(misled.notify_docked());
+  const SwitchableEdge& edge = misled.map().graph.switchable_edges.back();
+  EXPECT_EQ(edge.firmness, credulous.dock_graph_builder.closure_firmness);
+  EXPECT_FALSE(edge.is_on());
+  EXPECT_LT(between(before, misled.sensor_pose()).translation().norm(), 0.02);
+}
+
+TEST_F(MapperCallsTest, ALoadedMapsDockClosureIsAsFirmAsWhenItWasMade) {
+  drive_lap();
+  ASSERT_TRUE(mapper.notify_docked());
+  Map loaded = map();
+  for (SwitchableEdge& edge : loaded.graph.switchable_edges) edge.firmness = 1.0;  // map files do not tell
+  Mapper later{Parameters(), kMount};
+  later.set_map(loaded);
+  for (std::size_t k = 0; k < loaded.graph.switchable_edges.size(); ++k) {
+    EXPECT_EQ(later.map().graph.switchable_edges[k].firmness, map().graph.switchable_edges[k].firmness) << k;
+  }
+}
+
 TEST_F(MapperCallsTest, NotifyDockedBeforeAnyScanIsAnError) {
   EXPECT_THROW(mapper.notify_docked(), StateError);
 }

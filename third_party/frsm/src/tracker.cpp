@@ -17,8 +17,19 @@ constexpr double kWindowSigmas = 3.0;
 constexpr double kWorthwhileHits = 0.02;  // another guess must bring this many more hits to be believed
 constexpr double kRetryWindow = 3.0;      // the last try's window, and its prior's standard deviations twice as wide
 constexpr double kRetryPrior = 2.0;
-constexpr int kTellingHits = 4;       // times the fewest points that are matched
+constexpr int kTellingHits = 4;  // times the fewest points that are matched
+// A view this wide turns without bias; of a narrower one this much of its edge is left out beside what is new, unless
+// too little would be left.
+constexpr double kWideView = 2.6;    // [rad]
+constexpr double kEdge = 0.03;       // [rad]
+constexpr double kLeastTurn = 0.02;  // [rad]
+constexpr double kLeastShare = 0.6;
+
 constexpr double kLongestStep = 2.0;  // the constant velocity is not drawn out over more than this [s]
+
+double bearing(const Point& p) {
+  return std::atan2(p.y, p.x);
+}
 
 Eigen::Matrix3d diagonal(double sigma_xy, double sigma_theta) {
   const Eigen::Vector3d variances(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_theta * sigma_theta);
@@ -140,6 +151,9 @@ void Tracker::join_pending() {
   pending_.reset();
   history_.add(transform(scan.pose, scan.body), extract_contours(scan.body, params_.contours), scan.pose);
   last_added_ = scan.pose;
+  const auto [right, left] = std::minmax_element(
+      scan.body.begin(), scan.body.end(), [](const Point& a, const Point& b) { return bearing(a) < bearing(b); });
+  last_seen_ = {bearing(*right), bearing(*left)};
   ++added_scans_;
 }
 
@@ -176,8 +190,24 @@ Window Tracker::window(const Prior& prior, double scale) const {
           half(2, params_.initial_search_range_theta, params_.max_search_range_theta)};
 }
 
+// A view that turns sees something new at one edge, and each new point would rather lie on the old map: the best pose
+// turns too little, always the same way. So points beyond what the last scan of the map saw are left out.
+Points Tracker::without_new_edge(const Points& body, const Prior& prior) const {
+  const double turn = wrap(prior.mean.theta - last_added_.theta);
+  Points points = drop_invalid(body);
+  if (last_seen_.left - last_seen_.right > kWideView || std::abs(turn) < kLeastTurn) return points;
+  const auto is_new = [&](const Point& p) {
+    return turn > 0.0 ? bearing(p) > last_seen_.left - turn - kEdge : bearing(p) < last_seen_.right - turn + kEdge;
+  };
+  Points old = points;
+  old.erase(std::remove_if(old.begin(), old.end(), is_new), old.end());
+  const bool enough = static_cast<int>(old.size()) >= params_.matcher.min_points &&
+                      static_cast<double>(old.size()) >= kLeastShare * static_cast<double>(points.size());
+  return enough ? old : points;
+}
+
 Match Tracker::try_match(const Points& body, const Prior& prior, double widen) const {
-  return matcher_.match(history_.table(), body, prior.mean, window(prior, widen), &prior);
+  return matcher_.match(history_.table(), without_new_edge(body, prior), prior.mean, window(prior, widen), &prior);
 }
 
 // Odometry freezes and jumps at times. A poor match is tried again where the robot would be if it had kept its

@@ -93,7 +93,12 @@ class Tracker {
     Points body;
     Pose pose;
   };
+  struct Bearings {
+    double right = 0.0;  // [rad]
+    double left = 0.0;
+  };
   void join_pending();
+  Points without_new_edge(const Points& body, const Prior& prior) const;
   Prior expect(double time, const std::optional<Motion>& odometry) const;
   Pose predict(double time) const;
   Window window(const Prior& prior, double scale) const;
@@ -108,6 +113,7 @@ class Tracker {
   History history_;
   Pose pose_;
   Pose last_added_;
+  Bearings last_seen_;  // of the returns of the scan that joined last
   Eigen::Matrix3d drift_ =
       Eigen::Matrix3d::Zero();      // covariance of the motion since the last usable match, table's axes
   std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled
