@@ -20,7 +20,8 @@ constexpr const char* kGiven = "given";
 constexpr double kSameDock = 0.5;  // [m] between docks that are one
 constexpr int kMaxDockPairs = 9;   // that are tried
 
-// Views that fit, for each that contradicts, of a placement that is believed: furniture is moved.
+// More views must fit than contradict where a map is found, as it may be bent; and so many for each that contradicts
+// once closures have straightened it: furniture is moved.
 constexpr int kFitsPerContradiction = 2;
 
 // Another placement with more than this share of the best one's score is as good.
@@ -76,7 +77,7 @@ std::string evidence(const MapPlacement& p, const MapSearch& search) {
 }
 
 bool is_believed(const MapPlacement& p, const MapSearch& search) {
-  return p.fits >= search.needed && p.fits >= kFitsPerContradiction * p.contradicts;
+  return p.fits >= search.needed && p.fits > p.contradicts;
 }
 
 [[noreturn]] void refuse(const MapSearch& search) {
@@ -133,6 +134,28 @@ std::uint64_t count_kept(const Graph& graph, std::uint64_t begin) {
       }));
 }
 
+/// A map with other poses: those of the nodes from `first` on.
+Map solved(Map map, const Map& joined, std::uint64_t first) {
+  for (Node& node : map.graph.nodes) node.pose = joined.graph.nodes[first + node.id].pose;
+  return map;
+}
+
+/// Throws InputError if closures, or views of the solved maps, speak against the merged map.
+void confirm(const Map& a, const Map& b, const Merged& merged, const Parameters& parameters) {
+  const std::string what = "merge: where the second map was found on the first is not confirmed: ";
+  if (merged.across_kept < kLeastKept ||
+      static_cast<double>(merged.across_kept) < kLeastKeptShare * static_cast<double>(merged.across.accepted)) {
+    throw InputError(what + "of " + std::to_string(merged.across.accepted) + " closures the solution keeps " +
+                     std::to_string(merged.across_kept) + kWhatToDo);
+  }
+  const MapSearch search = find_placements(solved(a, merged.map, 0), solved(b, merged.map, merged.first_node_b),
+                                           parameters, {MapPlacement{}}, true);
+  const MapPlacement& p = search.placements.front();
+  if (p.fits < search.needed || p.fits < kFitsPerContradiction * p.contradicts) {
+    throw InputError(what + "once both are solved together " + evidence(p, search) + kWhatToDo);
+  }
+}
+
 /// Leaves out the second map's places that the first has already.
 std::vector<DroppedLocation> drop_doubles(Map& map, std::uint64_t first_node_b) {
   const auto is_of_a = [&](const Location& location) { return location.node_id < first_node_b; };
@@ -177,12 +200,7 @@ Merged merge_maps(const Map& a, const Map& b, const Parameters& parameters, cons
   mapper.finish();
   merged.map = mapper.map();
   merged.across_kept = count_kept(merged.map.graph, merged.first_node_b);
-  if (merged.across_kept < kLeastKept ||
-      static_cast<double>(merged.across_kept) < kLeastKeptShare * static_cast<double>(merged.across.accepted)) {
-    throw InputError("merge: closures do not confirm where the second map lies on the first: of " +
-                     std::to_string(merged.across.accepted) + " the solution keeps " +
-                     std::to_string(merged.across_kept) + kWhatToDo);
-  }
+  confirm(a, b, merged, parameters);
   merged.dropped = drop_doubles(merged.map, merged.first_node_b);
   return merged;
 }
