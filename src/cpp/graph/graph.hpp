@@ -58,4 +58,7 @@ struct Graph {
   std::vector<SwitchableEdge> switchable_edges;
 };
 
+/// The id after those of all edges of either kind.
+std::uint64_t next_edge_id(const Graph& graph);
+
 }  // namespace oort

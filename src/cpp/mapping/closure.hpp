@@ -5,6 +5,9 @@
 #include <cstdint>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/graph/optimizer.hpp"
+#include "oort/mapping/map.hpp"
+#include "oort/parameters/parameters.hpp"
 
 namespace oort {
 
@@ -17,5 +20,15 @@ struct Closure {
   double hit_fraction = 0.0;
   double firmness = 1.0;  ///< how many times as much as usual it costs to switch it off
 };
+
+/// A closure this far from what the graph expects is solved at once: 99 % of a chi-square of three degrees of freedom.
+constexpr double kSurprise = 11.345;
+
+/// Makes a closure a switchable link of the map, with its result. Returns its squared Mahalanobis distance from the
+/// poses as they are, by its own covariance.
+double add_closure(const Closure& closure, std::uint64_t edge_id, Map& map);
+
+/// How the parameters want a graph to be solved.
+OptimizerOptions optimizer_options(const Parameters& parameters, int max_iterations);
 
 }  // namespace oort

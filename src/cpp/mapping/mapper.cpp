@@ -138,9 +138,7 @@ void Mapper::set_map(Map map) {
   make_dock_closures_firm(map_, parameters_.dock_graph_builder.closure_firmness);
   chains_ = Chains::of_map(map_);
   loops_ = LoopClosureBuilder(parameters_);  // the submaps it remembers are of the old map
-  next_edge_id_ = map_.graph.edges.size() + map_.graph.switchable_edges.size();
-  for (const Edge& edge : map_.graph.edges) next_edge_id_ = std::max(next_edge_id_, edge.id + 1);
-  for (const SwitchableEdge& edge : map_.graph.switchable_edges) next_edge_id_ = std::max(next_edge_id_, edge.id + 1);
+  next_edge_id_ = next_edge_id(map_.graph);
   next_link_ = NextLink::kNone;
   last_scan_.reset();
   pending_closures_ = 0;
@@ -305,19 +303,8 @@ double Mapper::add_closures(const std::vector<Closure>& closures) {
 }
 
 double Mapper::add_closure(const Closure& closure) {
-  const Pose2 expected = between(map_.graph.nodes[closure.from].pose, map_.graph.nodes[closure.to].pose);
-  const Eigen::Vector3d error(expected.x - closure.T_from_to.x, expected.y - closure.T_from_to.y,
-                              wrap_angle(expected.theta - closure.T_from_to.theta));
-  map_.graph.switchable_edges.push_back(
-      {next_edge_id_++,
-       closure.from,
-       closure.to,
-       {map_.clouds[closure.from].time, closure.from, closure.T_from_to, closure.covariance, ConstraintType::kLaser},
-       1.0,
-       closure.firmness});
-  map_.loop_results.push_back({closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
   ++pending_closures_;
-  return error.dot(closure.covariance.ldlt().solve(error));
+  return oort::add_closure(closure, next_edge_id_++, map_);
 }
 
 ScanResult Mapper::result(const LastScan& scan, ScanOutcome outcome) const {

@@ -10,11 +10,8 @@
 namespace oort {
 namespace {
 
-// A closure this far from what the graph expects (99 % of a chi-square of 3 degrees of freedom) is solved at once.
-constexpr double kSurprise = 11.345;
-
-// Otherwise solving waits until the graph has grown by a twentieth, so that the work of all solves together stays in
-// proportion to the graph.
+// What does not surprise waits until the graph has grown by a twentieth, so that the work of all solves together stays
+// in proportion to the graph.
 constexpr std::uint64_t kMinSolveInterval = 10;
 constexpr std::uint64_t kSolveGrowth = 20;
 
@@ -72,11 +69,7 @@ void Mapper::solve_anew(int max_iterations) {
 
 OptimizerSummary Mapper::solve(int max_iterations, std::uint64_t first_free_node) {
   const WorkClock clock(work_seconds_.solving);
-  OptimizerOptions options;
-  options.switchable_constraint_scale = parameters_.switchable_constraint_scale;
-  options.robust_kernel = parameters_.robust_kernel == "huber" ? RobustKernel::kHuber : RobustKernel::kSwitchable;
-  options.huber_scale = parameters_.huber_scale;
-  options.max_iterations = max_iterations;
+  OptimizerOptions options = optimizer_options(parameters_, max_iterations);
   options.first_free_node = first_free_node;
   const OptimizerSummary summary = optimize(map_.graph, options);
   ++statistics_.solves;

@@ -50,13 +50,6 @@ std::vector<const PointCloud*> by_time(const Map& map) {
 
 }  // namespace
 
-std::uint64_t next_edge_id(const Graph& graph) {
-  std::uint64_t next = 0;
-  for (const Edge& edge : graph.edges) next = std::max(next, edge.id + 1);
-  for (const SwitchableEdge& edge : graph.switchable_edges) next = std::max(next, edge.id + 1);
-  return next;
-}
-
 std::uint64_t append_map(const Map& other, const Pose2& T_map_other, Map& map) {
   const std::uint64_t first_node = map.graph.nodes.size();
   const std::uint64_t first_edge = next_edge_id(map.graph);

@@ -13,9 +13,6 @@ namespace oort {
 /// first id of the nodes that were added.
 std::uint64_t append_map(const Map& other, const Pose2& T_map_other, Map& map);
 
-/// The lowest id that no edge of either kind has yet, nor any before it.
-std::uint64_t next_edge_id(const Graph& graph);
-
 /// How many scans are in both maps: same stamp, same points. More than none means that a map is a copy of the other, or
 /// goes on with it.
 std::uint64_t count_common_scans(const Map& a, const Map& b);

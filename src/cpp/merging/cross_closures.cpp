@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/merging/cross_closures.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <vector>
 
 #include "oort/graph/optimizer.hpp"
+#include "oort/mapping/dock_graph_builder.hpp"
 #include "oort/mapping/incremental_graph_builder.hpp"
 #include "oort/mapping/loop_closure_builder.hpp"
 #include "oort/merging/append_map.hpp"
@@ -22,9 +22,7 @@ constexpr double kJointSigmaTheta = 0.05;  // [rad]
 // a scan that nothing was matched with, which resume_scanmatch_cov_scale scales (FRSM.md 9).
 constexpr double kUnmatchedVariance = 0.1;
 
-// A closure this far from what the graph expects (99 % of a chi-square of 3 degrees of freedom) is solved at once;
-// otherwise solving waits until so many closures were added as are a twentieth of the nodes.
-constexpr double kSurprise = 11.345;
+// What does not surprise waits until so many closures were added as are a twentieth of the nodes.
 constexpr std::size_t kLeastWait = 10;
 constexpr std::size_t kWaitShare = 20;
 constexpr int kIterations = 15;
@@ -47,33 +45,10 @@ std::vector<std::uint64_t> outwards(std::uint64_t begin, std::uint64_t joint, st
   return nodes;
 }
 
-/// Adds a closure to a map; its squared Mahalanobis distance from what the graph expects.
-double add_closure(const Closure& closure, std::uint64_t edge_id, Map& map) {
-  const Pose2 expected = between(map.graph.nodes[closure.from].pose, map.graph.nodes[closure.to].pose);
-  const Eigen::Vector3d error(expected.x - closure.T_from_to.x, expected.y - closure.T_from_to.y,
-                              wrap_angle(expected.theta - closure.T_from_to.theta));
-  map.graph.switchable_edges.push_back(
-      {edge_id,
-       closure.from,
-       closure.to,
-       {map.clouds[closure.from].time, closure.from, closure.T_from_to, closure.covariance, ConstraintType::kLaser},
-       1.0});
-  map.loop_results.push_back({closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
-  return error.dot(closure.covariance.ldlt().solve(error));
-}
-
-void solve(const Parameters& parameters, Graph& graph) {
-  OptimizerOptions options;
-  options.switchable_constraint_scale = parameters.switchable_constraint_scale;
-  options.robust_kernel = parameters.robust_kernel == "huber" ? RobustKernel::kHuber : RobustKernel::kSwitchable;
-  options.huber_scale = parameters.huber_scale;
-  options.max_iterations = kIterations;
-  optimize(graph, options);
-}
-
 }  // namespace
 
 ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, const Parameters& parameters) {
+  make_dock_closures_firm(map, parameters.dock_graph_builder.closure_firmness);
   const Chains chains = Chains::of_map(map);
   LoopClosureBuilder loops(parameters);
   ClosureCounts counts;
@@ -91,7 +66,7 @@ ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, co
       ++waiting;
     }
     if (surprise > kSurprise || waiting >= patience) {
-      solve(parameters, map.graph);
+      optimize(map.graph, optimizer_options(parameters, kIterations));
       waiting = 0;
     }
   }
