@@ -57,6 +57,7 @@ TEST_F(ConfirmationTest, OnesThatContradictDoNot) {
 TEST_F(ConfirmationTest, OldOnesAreForgotten) {
   EXPECT_TRUE(confirmation.add(map, closure(110, 10)).empty());
   EXPECT_TRUE(confirmation.add(map, closure(190, 90)).empty());
+  EXPECT_TRUE(confirmation.add(map, closure(110, 10)).empty()) << "nor do those of nodes far after it count";
 }
 
 }  // namespace

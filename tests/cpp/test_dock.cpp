@@ -164,6 +164,36 @@ TEST_F(DockTest, WhereTheLastNodesAreBentFewerAreMatched) {
   EXPECT_NEAR(closure->T_from_to.theta, kDocked.theta, 0.01);
 }
 
+// Of the 24 nodes of this drive the last ones are bent; matched with those just before them they would fit.
+TEST_F(DockTest, TheWayBackDoesNotStandForTheDock) {
+  chains = {};
+  const Pose2 T_bent{0.1, -0.05, 0.2};
+  for (std::uint64_t k = 0; k < map.graph.nodes.size(); ++k) {
+    const Pose2 place = k == query ? dock() * kDocked : map.graph.nodes[k].pose;
+    chains.add(k == 0, true, k < query - 10 ? place : T_bent * place);
+  }
+  p.dock_match_least_size = 1;
+  const std::optional<Closure> closure = find();
+  ASSERT_TRUE(closure);
+  EXPECT_NEAR(closure->T_from_to.x, kDocked.x, 0.02);
+  EXPECT_NEAR(closure->T_from_to.y, kDocked.y, 0.02);
+  EXPECT_NEAR(closure->T_from_to.theta, kDocked.theta, 0.02);
+}
+
+TEST_F(DockTest, ThatOneNodeIsAllThereIsMakesItNoBetter) {
+  const std::optional<Closure> whole = find();
+  ASSERT_TRUE(whole);
+  chains = {};  // the last node stands alone: what is before it is of another session
+  for (const Node& node : map.graph.nodes) chains.add(node.id == 0 || node.id == query, true, node.pose);
+  for (std::size_t k = 0; k < 60; ++k) {  // a third of what it sees has changed
+    map.clouds[query].points[k].x *= 0.6;
+    map.clouds[query].points[k].y *= 0.6;
+  }
+  EXPECT_TRUE(find());  // as documented
+  p.dock_match_least_size = 1;
+  EXPECT_EQ(verdict(), "hits");
+}
+
 TEST_F(DockTest, OnlyWhatWasMatchedIsFirm) {
   const Eigen::Matrix3d documented = find().value().covariance;
   EXPECT_EQ(find()->firmness, 1.0);
@@ -204,9 +234,11 @@ TEST_F(DockTest, WhereNothingIsSeenTheContactsCount) {
   ASSERT_TRUE(closure);
   EXPECT_EQ(closure->T_from_to.x, 0.0);
   EXPECT_EQ(closure->hit_fraction, 0.0);
-  const double deviation = 0.5 * (p.dock_contacts_size + p.dock_max_translation);
-  EXPECT_NEAR(closure->covariance(0, 0), deviation * deviation, 1e-12);
+  const double reach = p.dock_contacts_size + p.dock_max_translation;
+  EXPECT_NEAR(closure->covariance(0, 0), reach * reach, 1e-12);
   EXPECT_EQ(counts.accepted, 1u);
+  p.closure_firmness = 100.0;  // the reach is a limit, two deviations away
+  EXPECT_NEAR(find()->covariance(0, 0), 0.25 * reach * reach, 1e-12);
 }
 
 TEST_F(DockTest, TheDocksOwnNodeIsNoClosure) {

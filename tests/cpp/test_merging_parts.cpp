@@ -87,6 +87,8 @@ TEST(CommonScans, AreThoseOfTheSameTimeAndPoints) {
   other.clouds[2].points.pop_back();
   EXPECT_EQ(count_common_scans(map, other), 2u);
   EXPECT_EQ(count_common_scans(map, Map{}), 0u);
+  for (PointCloud& cloud : other.clouds) cloud.points.clear();
+  EXPECT_EQ(count_common_scans(other, other), 0u) << "what saw nothing is alike on any drive";
 }
 
 TEST(SpreadViews, CoverTheMapEvenly) {

@@ -99,7 +99,8 @@ TEST(Sweep, KeepsWhatIsNoReturn) {
 
 TEST(Sweep, WithoutMotionOrWithAnImpossibleOneNothingChanges) {
   const PointCloud cloud = to_point_cloud(see(make_room(), {}, 0.0));
-  for (const Sweep& sweep : {Sweep{}, Sweep{{}, {1.5, 0.0, 0.0}}, Sweep{{0.0, 0.0, -0.6}, {0.0, 0.0, 0.6}}}) {
+  for (const Sweep& sweep : {Sweep{}, Sweep{{}, {1.5, 0.0, 0.0}}, Sweep{{0.0, 0.0, -0.6}, {0.0, 0.0, 0.6}},
+                             Sweep{{5.0, 0.0, 0.0}, {5.0, 0.0, 0.0}}}) {
     const PointCloud same = compensate_motion(cloud, sweep);
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
       EXPECT_EQ(same.points[i].x, cloud.points[i].x);

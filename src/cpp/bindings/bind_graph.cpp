@@ -208,7 +208,9 @@ void bind_graph(py::module_& m) {
       "optimize_map", [](Map& map, const OptimizerOptions& options) { return optimize(map.graph, options); },
       py::arg("map"), py::arg("options") = OptimizerOptions{}, py::call_guard<py::gil_scoped_release>(),
       "Solves the pose graph of a map in place, from its poses and switches; no other thread may use the map "
-      "meanwhile. Returns the summary. Raises InputError and ParameterError; the map is then unchanged.");
+      "meanwhile. Dock closures of a Mapper's map are as firm as its parameters say (docs/optimiser.md), those of a "
+      "map that was loaded are like others. Returns the summary. Raises InputError and ParameterError; the map is then "
+      "unchanged.");
   m.def("optimize_map_with_landmarks", &optimize_map_with_landmarks, py::arg("map"), py::arg("times"),
         py::arg("landmarks"), py::arg("measurements"), py::arg("covariances"), py::arg("options") = OptimizerOptions{},
         "Solves the pose graph of a map in place, always with Huber's loss, together with landmarks that are known "

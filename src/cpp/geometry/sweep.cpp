@@ -14,6 +14,10 @@ namespace {
 constexpr double kMostWay = 1.0;   // [m]
 constexpr double kMostTurn = 1.0;  // [rad]
 
+bool is_too_much(const Pose2& motion) {
+  return motion.translation().norm() > kMostWay || std::abs(motion.theta) > kMostTurn;
+}
+
 bool is_nothing(const Pose2& motion) {
   return motion.x == 0.0 && motion.y == 0.0 && motion.theta == 0.0;
 }
@@ -22,8 +26,8 @@ bool is_nothing(const Pose2& motion) {
 
 bool is_snapshot(const Sweep& sweep) {
   if (is_nothing(sweep.T_stamp_first) && is_nothing(sweep.T_stamp_last)) return true;
-  const Pose2 motion = between(sweep.T_stamp_first, sweep.T_stamp_last);
-  return motion.translation().norm() > kMostWay || std::abs(motion.theta) > kMostTurn;
+  return is_too_much(sweep.T_stamp_first) || is_too_much(sweep.T_stamp_last) ||
+         is_too_much(between(sweep.T_stamp_first, sweep.T_stamp_last));
 }
 
 Sweep sweep_of_sensor(const Sweep& sweep_of_base, const Pose2& T_base_sensor) {

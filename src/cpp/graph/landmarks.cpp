@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <string>
 
 #include "oort/geometry/errors.hpp"
@@ -58,7 +59,7 @@ class HuberProblem {
       : options_(options), loss_(options.huber_scale), problem_(borrowing()) {
     for (const Node& node : graph.nodes) nodes_.push_back(block_of(node.pose));  // before anything points there
     for (const Edge& edge : graph.edges) add_link(edge, nullptr);
-    for (const SwitchableEdge& edge : graph.switchable_edges) add_link(edge, &loss_);
+    for (const SwitchableEdge& edge : graph.switchable_edges) add_link(edge, loss_of(edge));
     const std::vector<bool> anchors = find_anchors(graph);
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       problem_.AddParameterBlock(nodes_[k].data(), 3);
@@ -104,6 +105,12 @@ class HuberProblem {
     return options;
   }
 
+  /// A firm link's squared error may be as many times larger before its cost is no longer squared.
+  ceres::LossFunction* loss_of(const SwitchableEdge& edge) {
+    if (edge.firmness == 1.0) return &loss_;
+    return &firm_losses_.emplace_back(options_.huber_scale * std::sqrt(edge.firmness));
+  }
+
   template <typename AnyEdge>
   void add_link(const AnyEdge& edge, ceres::LossFunction* loss) {
     const Eigen::Matrix3d W = whitening_or_refuse(edge.constraint.covariance, options_.whitening, describe(edge));
@@ -123,6 +130,7 @@ class HuberProblem {
 
   OptimizerOptions options_;
   ceres::HuberLoss loss_;
+  std::deque<ceres::HuberLoss> firm_losses_;
   std::vector<Block> nodes_;
   std::map<std::uint64_t, Block> landmarks_;
   ceres::Problem problem_;

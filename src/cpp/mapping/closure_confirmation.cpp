@@ -25,7 +25,9 @@ bool agree(const Map& map, const Closure& a, const Closure& b) {
 }  // namespace
 
 std::vector<Closure> ClosureConfirmation::add(const Map& map, const Closure& closure) {
-  const auto is_old = [&](const Closure& other) { return other.from + kMaxAge < closure.from; };
+  const auto is_old = [&](const Closure& other) {  // maps that are merged are also gone through backwards
+    return std::max(other.from, closure.from) - std::min(other.from, closure.from) > kMaxAge;
+  };
   waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), is_old), waiting_.end());
   std::vector<Closure> confirmed;
   double travel = 0.0;

@@ -19,23 +19,36 @@ constexpr double kSigmasOfReach = 2.0;
 constexpr double kBend = 0.03;       // [m]
 constexpr double kBendTheta = 0.02;  // [rad]
 
+/// Whether matches of fewer nodes than documented are tried.
+bool has_fallback(const DockGraphBuilderParameters& p) {
+  return p.dock_match_least_size < p.dock_match_submap_size;
+}
+
 /// Fewer nodes fit somewhere else, too, the sooner the fewer they are: as many misses are allowed less.
-double needed_hits(const DockGraphBuilderParameters& p, std::uint64_t query_size) {
-  const double share = static_cast<double>(query_size) / p.dock_match_submap_size;
+double needed_hits(const DockGraphBuilderParameters& p, std::size_t query_nodes) {
+  if (!has_fallback(p)) return p.dock_match_min_hit_pct;
+  const double share = static_cast<double>(query_nodes) / p.dock_match_submap_size;
   return p.dock_match_min_hit_pct + (1.0 - share) * (1.0 - p.dock_match_min_hit_pct);
 }
 
-/// Up to `size` nodes around the dock: its node and those after it, then those before it; none of the query's submap,
-/// which would match itself.
+/// The first of the nodes up to the query that may not stand for the dock. The way back would match itself, however
+/// bent: twice as many nodes as are matched are left out, but for the dock's own.
+std::uint64_t first_of_the_way_back(const DockGraphBuilderParameters& p, std::uint64_t dock, std::uint64_t query,
+                                    std::size_t query_nodes) {
+  std::uint64_t apart = static_cast<std::uint64_t>(query_nodes);
+  if (has_fallback(p)) {
+    const std::uint64_t way = query > dock ? query - dock : 0;
+    apart = std::max(apart, std::min<std::uint64_t>(2 * static_cast<std::uint64_t>(p.dock_match_submap_size), way));
+  }
+  return query + 1 - std::min(apart, query + 1);
+}
+
+/// Up to `size` nodes around the dock, none from `way_back` to `query`: its node and those after it, then those before.
 std::vector<PlacedNode> reference_nodes(const Map& map, const Chains& chains, std::uint64_t dock, std::size_t size,
-                                        const std::vector<PlacedNode>& query_nodes) {
-  const auto is_query = [&query_nodes](const PlacedNode& placed) {
-    return std::any_of(query_nodes.begin(), query_nodes.end(),
-                       [&placed](const PlacedNode& query) { return query.node == placed.node; });
-  };
+                                        std::uint64_t way_back, std::uint64_t query) {
   std::vector<PlacedNode> nodes;
   const auto take = [&](const PlacedNode& placed) {
-    if (nodes.size() < size && !is_query(placed)) nodes.push_back(placed);
+    if (nodes.size() < size && (placed.node < way_back || placed.node > query)) nodes.push_back(placed);
   };
   for (const PlacedNode& placed : walk_chain(map, chains, dock, Direction::kForward, size)) take(placed);
   const std::vector<PlacedNode> before = walk_chain(map, chains, dock, Direction::kBackward, size);
@@ -95,8 +108,9 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
   if (dock.node == query) {
     reason = "same_node";
   } else {
-    const auto least = static_cast<std::uint64_t>(parameters_.dock_match_least_size);
-    auto size = static_cast<std::uint64_t>(parameters_.dock_match_submap_size);
+    const auto least = static_cast<std::size_t>(parameters_.dock_match_least_size);
+    const auto most = static_cast<std::size_t>(parameters_.dock_match_submap_size);
+    std::size_t size = walk_chain(map, chains, query, Direction::kBackward, most).size();
     closure = match(map, chains, query, dock, size, reason);
     for (size /= 2; !closure && size >= least; size /= 2) {
       std::string later;  // what the documented number of nodes says is what counts
@@ -113,11 +127,12 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
 }
 
 std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
-                                               const DockPlace& dock, std::uint64_t query_size,
+                                               const DockPlace& dock, std::size_t query_size,
                                                std::string& reason) const {
   const std::vector<PlacedNode> query_nodes = walk_chain(map, chains, query, Direction::kBackward, query_size);
+  const std::uint64_t way_back = first_of_the_way_back(parameters_, dock.node, query, query_size);
   const std::vector<PlacedNode> reference =
-      reference_nodes(map, chains, dock.node, static_cast<std::size_t>(parameters_.dock_submap_size), query_nodes);
+      reference_nodes(map, chains, dock.node, static_cast<std::size_t>(parameters_.dock_submap_size), way_back, query);
   if (reference.empty()) {
     reason = "no_reference";
     return std::nullopt;
@@ -126,7 +141,8 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   // The robot touches the contacts somewhere along their size, and the dock may have been moved.
   const double reach = std::max(parameters_.dock_contacts_size + parameters_.dock_max_translation, table_.cell);
   const Eigen::Vector3d limits(reach, reach, parameters_.search_window_theta);
-  const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / kSigmasOfReach).cwiseAbs2().asDiagonal()};
+  const double sigmas = parameters_.closure_firmness > 1.0 ? kSigmasOfReach : 1.0;  // 1 is what is documented
+  const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / sigmas).cwiseAbs2().asDiagonal()};
   const auto submap = draw_submap(map, reference, table_, contours_);
   const frsm::Match match = matcher_.match(*submap, points_of(map, query_nodes), prior.mean,
                                            {reach, reach, parameters_.search_window_theta}, &prior);

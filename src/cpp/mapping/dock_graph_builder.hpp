@@ -39,7 +39,7 @@ class DockGraphBuilder {
 
  private:
   std::optional<Closure> match(const Map& map, const Chains& chains, std::uint64_t query, const DockPlace& dock,
-                               std::uint64_t query_size, std::string& reason) const;
+                               std::size_t query_size, std::string& reason) const;
 
   DockGraphBuilderParameters parameters_;
   frsm::TableParams table_;

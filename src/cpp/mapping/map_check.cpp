@@ -3,6 +3,7 @@
 #include "oort/mapping/map_check.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace oort {
 namespace {
@@ -32,6 +33,7 @@ Defect check_nodes(const Map& map) {
 template <typename AnyEdge>
 Defect check_edge(const AnyEdge& edge, std::size_t node_count) {
   const std::string name = "edge " + number(edge.id);
+  if (edge.id == std::numeric_limits<std::uint64_t>::max()) return name + " leaves no id for the edges to come";
   for (const std::uint64_t id : {edge.i, edge.j, edge.constraint.id}) {
     if (id >= node_count) {
       return name + " refers to node " + number(id) + ", but there are " + number(node_count) + " nodes";

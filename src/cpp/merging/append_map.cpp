@@ -79,6 +79,7 @@ std::uint64_t count_common_scans(const Map& a, const Map& b) {
   const std::vector<const PointCloud*> clouds_a = by_time(a);
   std::uint64_t common = 0;
   for (const PointCloud* cloud : by_time(b)) {
+    if (count_returns(*cloud) == 0) continue;  // scans that saw nothing are all alike
     const auto from = std::lower_bound(clouds_a.begin(), clouds_a.end(), cloud->time,
                                        [](const PointCloud* other, double time) { return other->time < time; });
     for (auto other = from; other != clouds_a.end() && (*other)->time == cloud->time; ++other) {

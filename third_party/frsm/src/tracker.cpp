@@ -151,9 +151,7 @@ void Tracker::join_pending() {
   pending_.reset();
   history_.add(transform(scan.pose, scan.body), extract_contours(scan.body, params_.contours), scan.pose);
   last_added_ = scan.pose;
-  const auto [right, left] = std::minmax_element(
-      scan.body.begin(), scan.body.end(), [](const Point& a, const Point& b) { return bearing(a) < bearing(b); });
-  last_seen_ = {bearing(*right), bearing(*left)};
+  last_seen_ = view_of(scan.body);
   ++added_scans_;
 }
 
@@ -190,6 +188,23 @@ Window Tracker::window(const Prior& prior, double scale) const {
           half(2, params_.initial_search_range_theta, params_.max_search_range_theta)};
 }
 
+// A sensor may look anywhere, backwards too: bearings are told from the middle of what it sees.
+Tracker::View Tracker::view_of(const Points& body) {
+  Point sum{0.0, 0.0};
+  for (const Point& p : body) {
+    const double range = std::hypot(p.x, p.y);
+    if (range > 0.0) sum = {sum.x + p.x / range, sum.y + p.y / range};
+  }
+  View view;
+  view.middle = bearing(sum);
+  for (const Point& p : body) {
+    const double angle = wrap(bearing(p) - view.middle);
+    view.right = std::min(view.right, angle);
+    view.left = std::max(view.left, angle);
+  }
+  return view;
+}
+
 // A view that turns sees something new at one edge, and each new point would rather lie on the old map: the best pose
 // turns too little, always the same way. So points beyond what the last scan of the map saw are left out.
 Points Tracker::without_new_edge(const Points& body, const Prior& prior) const {
@@ -197,7 +212,8 @@ Points Tracker::without_new_edge(const Points& body, const Prior& prior) const {
   Points points = drop_invalid(body);
   if (last_seen_.left - last_seen_.right > kWideView || std::abs(turn) < kLeastTurn) return points;
   const auto is_new = [&](const Point& p) {
-    return turn > 0.0 ? bearing(p) > last_seen_.left - turn - kEdge : bearing(p) < last_seen_.right - turn + kEdge;
+    const double angle = wrap(bearing(p) - last_seen_.middle);
+    return turn > 0.0 ? angle > last_seen_.left - turn - kEdge : angle < last_seen_.right - turn + kEdge;
   };
   Points old = points;
   old.erase(std::remove_if(old.begin(), old.end(), is_new), old.end());

@@ -93,10 +93,12 @@ class Tracker {
     Points body;
     Pose pose;
   };
-  struct Bearings {
-    double right = 0.0;  // [rad]
+  struct View {
+    double middle = 0.0;  // the mean bearing [rad]
+    double right = 0.0;   // its edges, seen from there [rad]
     double left = 0.0;
   };
+  static View view_of(const Points& body);
   void join_pending();
   Points without_new_edge(const Points& body, const Prior& prior) const;
   Prior expect(double time, const std::optional<Motion>& odometry) const;
@@ -113,7 +115,7 @@ class Tracker {
   History history_;
   Pose pose_;
   Pose last_added_;
-  Bearings last_seen_;  // of the returns of the scan that joined last
+  View last_seen_;  // of the returns of the scan that joined last
   Eigen::Matrix3d drift_ =
       Eigen::Matrix3d::Zero();      // covariance of the motion since the last usable match, table's axes
   std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled
