@@ -23,7 +23,7 @@ from oort.export import write_picture
 from oort.parameters import read_parameters
 from oort.poses import compose
 from oort.recording import Pose
-from oort.tool import run_tool
+from oort.tool import add_pose_argument, parse_arguments, run_tool
 
 __all__ = ["Merged", "main", "merge", "merge_maps"]
 
@@ -108,12 +108,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("first", metavar="A", help="the path of the first map, whose frame and places are kept")
     parser.add_argument("second", metavar="B", help="the path of the second map")
     parser.add_argument("target", metavar="OUT", help="where the new map goes")
-    parser.add_argument(
-        "--at",
-        type=float,
-        nargs=3,
-        metavar=("X", "Y", "THETA"),
-        help="about where the second map's origin lies on the first [m, rad]; found if not given",
+    add_pose_argument(
+        parser, "--at", "about where the second map's origin lies on the first [m, rad]; found if not given"
     )
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     return parser
@@ -126,7 +122,7 @@ def _run(args: argparse.Namespace) -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
-    args = _parser().parse_args(argv)
+    args = parse_arguments(_parser(), argv)
     return run_tool("oort merge", lambda: _run(args), args.first)
 
 
