@@ -47,6 +47,10 @@ def test_every_command_that_takes_a_pose(capsys: pytest.CaptureFixture[str]) -> 
     assert [line.split(": ")[0] for line in told] == ["oort merge", "oort replay", "oort localize"]
 
 
+def stop() -> None:
+    raise KeyboardInterrupt
+
+
 def refuse() -> None:
     raise InputError("no scan")
 
@@ -60,6 +64,7 @@ def test_how_a_tool_ends(capsys: pytest.CaptureFixture[str]) -> None:
     for run, status, told in (
         (refuse, 2, "oort x: no scan\n"),
         (refuse_to_read, 2, "oort x: home: Permission denied\n"),
+        (stop, 130, "oort x: interrupted\n"),
     ):
         assert run_tool("oort x", run, "home") == status
         assert capsys.readouterr().err == told

@@ -5,6 +5,7 @@
 import argparse
 import math
 import re
+import signal
 import sys
 from collections.abc import Callable, Sequence
 
@@ -16,7 +17,7 @@ _PLAIN = re.compile(r"-\d+|-\d*\.\d+")
 
 
 def run_tool(name: str, run: Callable[[], None], reading: str = "") -> int:
-    """Runs a tool; the exit status is 0, or 2 for an error, which is printed without a traceback.
+    """Runs a tool; the exit status is 0, or 2 for an error and 130 for Ctrl-C, told without a traceback.
 
     ``reading`` is the file that an error of the operating system is about if it names none.
     """
@@ -28,6 +29,9 @@ def run_tool(name: str, run: Callable[[], None], reading: str = "") -> int:
     except OSError as error:
         print(f"{name}: {error.filename or reading}: {error.strerror}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print(f"{name}: interrupted", file=sys.stderr)
+        return 128 + signal.SIGINT
     return 0
 
 
