@@ -214,15 +214,18 @@ def test_a_map_of_another_home_is_refused(
 
 def test_calls_that_cannot_be_used(maps: list[Mapped], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     first, second = maps
-    broken = tmp_path / "broken"
+    broken, cut = tmp_path / "broken", tmp_path / "cut"
     for suffix in SUFFIXES:
         data = Path(second.path + suffix).read_bytes()
         Path(str(broken) + suffix).write_bytes(data[: len(data) // 2])
+        Path(str(cut) + suffix).write_bytes(data[: len(data) // 2] if suffix == ".map_capnp" else data)
     calls: list[tuple[list[str], str]] = [
         ([first.path, first.path + ".map_capnp", str(tmp_path / "x")], "both maps are the same one"),
         ([first.path, second.path, first.path], "would replace one of the two"),
         ([first.path, str(tmp_path / "none"), str(tmp_path / "x")], "none"),
         ([first.path, str(broken), str(tmp_path / "x")], "broken"),
+        ([first.path, str(cut), str(tmp_path / "x")], "cut.map_capnp"),
+        ([str(cut), second.path, str(tmp_path / "x")], "oort.load_map(path, ignore_checksum=True)"),
         ([first.path, second.path, str(tmp_path / "x"), "--at", "1e7", "-1e-3", "0"], "check X Y THETA"),
     ]
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
