@@ -120,7 +120,9 @@ TEST_F(MergeTest, AGivenPlaceMayBeOff) {
   EXPECT_EQ(merged.placement.found_by, "given");
   EXPECT_LT(worst_error(merged.map, forth, back), 0.05);
   EXPECT_NE(refusal(a, b, truth * Pose2{1.5, 1.0, 0.8}).find("at the place that was given"), std::string::npos);
-  EXPECT_NE(refusal(a, b, Pose2{NAN, 0.0, 0.0}), "");
+  for (const Pose2& nowhere : {Pose2{NAN, 0.0, 0.0}, Pose2{1e7, 0.0, 0.0}, Pose2{0.0, -1e300, 0.0}}) {
+    EXPECT_NE(refusal(a, b, nowhere).find("100 km off; check X Y THETA"), std::string::npos) << nowhere.x;
+  }
 }
 
 TEST_F(MergeTest, OfTheSamePlaceTheFirstMapsIsKept) {
@@ -163,6 +165,16 @@ TEST_F(MergeTest, AMapOfOneSceneIsJoinedOnlyWhereItIsSaidToLie) {
   EXPECT_NE(told.find("too little"), std::string::npos) << told;
   const Merged merged = merge_maps(a, scene, Parameters{}, between(forth[0] * kMount, back[0] * kMount));
   EXPECT_LT(worst_error(merged.map, forth, back), 0.05);
+}
+
+TEST_F(MergeTest, WhatFewScansSayIsNotEnoughEvenWhereItIsSaidToLie) {
+  const std::vector<Pose2> bit(back.begin(), back.begin() + 2);
+  const Map scene = map_of(make_room(), bit, 1000.0, 2);
+  EXPECT_NE(refusal(a, scene).find("--at X Y THETA"), std::string::npos);
+  const std::string told = refusal(a, scene, between(forth[0] * kMount, back[0] * kMount));
+  EXPECT_NE(told.find("not confirmed"), std::string::npos) << told;
+  EXPECT_NE(told.find("--resume"), std::string::npos) << told;
+  EXPECT_EQ(told.find("--at"), std::string::npos) << told;
 }
 
 TEST_F(MergeTest, AMapOfAnotherRoomIsRefused) {

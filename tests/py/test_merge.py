@@ -108,7 +108,7 @@ def merged_errors(first: Mapped, second: Mapped, map_: Map) -> list[float]:
 def merged(maps: list[Mapped]) -> tuple[str, str]:
     """Where the two maps are merged, and what was told of it."""
     path = str(Path(maps[0].path).with_name("both"))
-    return path, merge(maps[0].path, maps[1].path, path, Parameters())
+    return path, "\n".join(merge(maps[0].path, maps[1].path, path, Parameters()))
 
 
 def test_two_maps_become_one(maps: list[Mapped], merged: tuple[str, str]) -> None:
@@ -133,6 +133,32 @@ def test_the_command_does_the_same_to_the_byte(
     assert files_of(str(tmp_path / "home"))[".map_capnp"] == files_of(path)[".map_capnp"]
     assert (tmp_path / "home.png").read_bytes() == Path(path + ".png").read_bytes()
     assert (files_of(maps[0].path), files_of(maps[1].path)) == before
+
+
+def test_all_is_told_though_the_picture_cannot_be_written(
+    maps: list[Mapped], merged: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, told = merged
+    (tmp_path / "home.png").mkdir()
+    assert main([maps[0].path, maps[1].path, str(tmp_path / "home")]) == 2
+    out, err = capsys.readouterr()
+    assert out.replace(str(tmp_path / "home"), path).splitlines() == told.splitlines()[:-1]
+    assert "home.png cannot be written" in err
+    assert files_of(str(tmp_path / "home"))[".map_capnp"] == files_of(path)[".map_capnp"]
+
+
+def test_what_is_being_done_is_told_before(
+    maps: list[Mapped], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("oort.merge.merge_maps", interrupted)
+    assert main([maps[0].path, maps[1].path, str(tmp_path / "home")]) == 130
+    out, err = capsys.readouterr()
+    assert "looking for where the second map lies" in out
+    assert err == "oort merge: interrupted\n"
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_merged_map_is_a_map_like_any_other(maps: list[Mapped], merged: tuple[str, str]) -> None:
@@ -188,15 +214,19 @@ def test_a_map_of_another_home_is_refused(
 
 def test_calls_that_cannot_be_used(maps: list[Mapped], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     first, second = maps
-    broken = tmp_path / "broken"
+    broken, cut = tmp_path / "broken", tmp_path / "cut"
     for suffix in SUFFIXES:
         data = Path(second.path + suffix).read_bytes()
         Path(str(broken) + suffix).write_bytes(data[: len(data) // 2])
+        Path(str(cut) + suffix).write_bytes(data[: len(data) // 2] if suffix == ".map_capnp" else data)
     calls: list[tuple[list[str], str]] = [
         ([first.path, first.path + ".map_capnp", str(tmp_path / "x")], "both maps are the same one"),
         ([first.path, second.path, first.path], "would replace one of the two"),
         ([first.path, str(tmp_path / "none"), str(tmp_path / "x")], "none"),
         ([first.path, str(broken), str(tmp_path / "x")], "broken"),
+        ([first.path, str(cut), str(tmp_path / "x")], "cut.map_capnp"),
+        ([str(cut), second.path, str(tmp_path / "x")], "oort.load_map(path, ignore_checksum=True)"),
+        ([first.path, second.path, str(tmp_path / "x"), "--at", "1e7", "-1e-3", "0"], "check X Y THETA"),
     ]
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     for arguments, told in calls:

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/mapping/map_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "oort/geometry/errors.hpp"
+
 namespace oort {
 namespace {
+
+constexpr double kMaxCoordinate = 1e5;  // [m]
 
 using Defect = std::optional<std::string>;
 
@@ -124,6 +129,12 @@ Defect find_defect(const Map& map) {
     if (auto defect = check(map)) return defect;
   }
   return std::nullopt;
+}
+
+void check_reach(const Pose2& pose, const std::string& what, const std::string& advice) {
+  if (!is_finite(pose) || std::max(std::abs(pose.x), std::abs(pose.y)) > kMaxCoordinate) {
+    throw InputError(what + " is not finite or more than 100 km off; " + advice);
+  }
 }
 
 }  // namespace oort

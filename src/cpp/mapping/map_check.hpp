@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "oort/geometry/pose2.hpp"
 #include "oort/mapping/map.hpp"
 
 namespace oort {
@@ -12,5 +13,9 @@ namespace oort {
 /// edges, results or locations of nodes that do not exist, a cloud missing or at the wrong node, numbers that are not
 /// finite where they must be, a switch outside [0, 1]. Nothing for a sound map.
 std::optional<std::string> find_defect(const Map& map);
+
+/// Throws InputError, "`what` is ...; `advice`", if a pose is not finite or more than 100 km off. Farther off, float
+/// coordinates and the matcher's lattice lose their meaning; no robot gets there.
+void check_reach(const Pose2& pose, const std::string& what, const std::string& advice = "check where it comes from");
 
 }  // namespace oort

@@ -21,15 +21,6 @@ constexpr double kUnmatchedVariance = 0.1;
 // So many nodes in a row that only odometry places, and the scan matcher starts afresh.
 constexpr int kMaxRefusals = 5;
 
-// Farther off, float coordinates and the matcher's lattice lose their meaning; no robot gets there.
-constexpr double kMaxCoordinate = 1e5;  // [m]
-
-void check_reach(const Pose2& pose, const std::string& what) {
-  if (!is_finite(pose) || std::max(std::abs(pose.x), std::abs(pose.y)) > kMaxCoordinate) {
-    throw InputError(what + " is not finite or more than 100 km off; check where it comes from");
-  }
-}
-
 Eigen::Matrix3d inflated_covariance(double scale) {
   return kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
 }

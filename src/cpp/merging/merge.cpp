@@ -34,9 +34,15 @@ constexpr double kAsGood = 0.9;
 constexpr std::uint64_t kLeastKept = 3;
 constexpr double kLeastKeptShare = 0.5;
 
-const char* const kWhatToDo =
-    "; if both show the same home, say with --at X Y THETA about where the second one's origin lies on the first, or "
-    "drive on from the first map (oort replay --resume)";
+// What a given place is.
+const char* const kCheckPlace =
+    "check X Y THETA: where the second map's origin lies on the first, in metres and radians";
+
+std::string what_to_do(bool is_given) {
+  const std::string say = "say with --at X Y THETA about where the second one's origin lies on the first, or ";
+  return "; if both show the same home, " + (is_given ? "" : say) +
+         "drive on from the first map (oort replay --resume)";
+}
 
 void check(const Map& map, const std::string& name) {
   if (map.graph.nodes.empty()) throw InputError("merge: the " + name + " map is empty: there is nothing to merge");
@@ -84,15 +90,15 @@ bool is_believed(const MapPlacement& p, const MapSearch& search) {
   const bool given = !search.placements.empty() && search.placements.front().found_by == kGiven;
   const std::string best = search.placements.empty() ? "nothing fits" : evidence(search.placements.front(), search);
   if (given) {
-    throw InputError("merge: the second map does not fit the first at the place that was given (" + best +
-                     "); check X Y THETA: where the second map's origin lies on the first, in metres and radians");
+    throw InputError("merge: the second map does not fit the first at the place that was given (" + best + "); " +
+                     kCheckPlace);
   }
   if (search.views < search.needed) {
     throw InputError("merge: the smaller map shows too little to be searched for: " + std::to_string(search.views) +
-                     " places apart, and " + std::to_string(search.needed) + " are needed" + kWhatToDo);
+                     " places apart, and " + std::to_string(search.needed) + " are needed" + what_to_do(false));
   }
   throw InputError("merge: no place where the second map fits the first was found (at the best place " + best + ")" +
-                   kWhatToDo);
+                   what_to_do(false));
 }
 
 /// The best placement. One at the docks counts as much as a better one elsewhere, where both fit about as well.
@@ -110,7 +116,7 @@ MapPlacement chosen(const MapSearch& search) {
     return *at_dock;
   }
   throw InputError("merge: the second map fits the first in more than one place: at the best " +
-                   evidence(rivals[0], search) + ", at the next " + evidence(rivals[1], search) + kWhatToDo);
+                   evidence(rivals[0], search) + ", at the next " + evidence(rivals[1], search) + what_to_do(false));
 }
 
 MapPlacement place(const Map& a, const Map& b, const Parameters& parameters, const std::optional<Pose2>& T_a_b,
@@ -142,17 +148,18 @@ Map solved(Map map, const Map& joined, std::uint64_t first) {
 
 /// Throws InputError if closures, or views of the solved maps, speak against the merged map.
 void confirm(const Map& a, const Map& b, const Merged& merged, const Parameters& parameters) {
+  const std::string advice = what_to_do(merged.placement.found_by == kGiven);
   const std::string what = "merge: where the second map was found on the first is not confirmed: ";
   if (merged.across_kept < kLeastKept ||
       static_cast<double>(merged.across_kept) < kLeastKeptShare * static_cast<double>(merged.across.accepted)) {
     throw InputError(what + "of " + std::to_string(merged.across.accepted) + " closures the solution keeps " +
-                     std::to_string(merged.across_kept) + kWhatToDo);
+                     std::to_string(merged.across_kept) + advice);
   }
   const MapSearch search = find_placements(solved(a, merged.map, 0), solved(b, merged.map, merged.first_node_b),
                                            parameters, {MapPlacement{}}, true);
   const MapPlacement& p = search.placements.front();
   if (p.fits < search.needed || p.fits < kFitsPerContradiction * p.contradicts) {
-    throw InputError(what + "once both are solved together " + evidence(p, search) + kWhatToDo);
+    throw InputError(what + "once both are solved together " + evidence(p, search) + advice);
   }
 }
 
@@ -187,7 +194,7 @@ std::vector<DroppedLocation> drop_doubles(Map& map, std::uint64_t first_node_b) 
 Merged merge_maps(const Map& a, const Map& b, const Parameters& parameters, const std::optional<Pose2>& T_a_b) {
   check(a, "first");
   check(b, "second");
-  if (T_a_b && !is_finite(*T_a_b)) throw InputError("merge: the given place of the second map is not finite");
+  if (T_a_b) check_reach(*T_a_b, "merge: the given place of the second map", kCheckPlace);
   check_distinct(a, b);
   Merged merged;
   merged.placement = place(a, b, parameters, T_a_b, merged.views);

@@ -38,8 +38,9 @@ struct Merged {
 /// at the docks, or by a search of the whole map (map_placement.hpp). Of places with the same namespace and id, and of
 /// docks at the same place, those of map a are kept.
 ///
-/// Throws InputError if a map is empty or contradicts itself, if the maps have scans in common, if map b is not found
-/// on map a or in more than one place, or if closures do not confirm what was found; ParameterError as Mapper does.
+/// Throws InputError if a map is empty or contradicts itself, if the maps have scans in common, if `T_a_b` is not
+/// finite or beyond 100 km, if map b is not found on map a or in more than one place, or if closures do not confirm
+/// what was found; ParameterError as Mapper does.
 Merged merge_maps(const Map& a, const Map& b, const Parameters& parameters,
                   const std::optional<Pose2>& T_a_b = std::nullopt);
 

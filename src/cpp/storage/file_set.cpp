@@ -110,7 +110,7 @@ std::optional<FileSet::Whole> FileSet::find_whole(bool checksum_is_new) const {
 
 std::string FileSet::why_not_whole() const {
   const std::string advice =
-      "; restore the map's three files from a copy, or load it with ignore_checksum if you trust them";
+      std::string("; restore the map's three files from a copy, or if you trust them ") + kLoadUnchecked;
   for (const std::string& name : {map_name_, metadata_name_, checksum_name_}) {
     if (!directory_.holds(name)) {
       const bool is_map = name == map_name_;

@@ -8,6 +8,10 @@
 
 namespace oort {
 
+/// How to recover a map whose checksums are lost or do not fit, in words that follow a condition.
+inline constexpr const char* kLoadUnchecked =
+    "load it with ignore_checksum (in Python oort.load_map(path, ignore_checksum=True)) and save it anew";
+
 /// The bytes of a map's two content files.
 struct SetContent {
   std::string map;

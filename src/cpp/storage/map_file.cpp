@@ -29,7 +29,7 @@ bool is_single_file(const std::string& path, const std::string& base) {
 
 SetContent read_single_file(const std::string& path, const LoadOptions& options) {
   if (!options.ignore_checksum) {
-    throw MapFileError(path + " has no checksum file beside it; load it with ignore_checksum if you trust it");
+    throw MapFileError(path + " has no checksum file beside it; if you trust it, " + kLoadUnchecked);
   }
   const std::filesystem::path absolute = std::filesystem::absolute(path);
   return {Directory(absolute.parent_path().string()).read(absolute.filename().string()).value_or(""), std::nullopt};

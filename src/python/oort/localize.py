@@ -18,7 +18,7 @@ from oort.localization import STARTS, LocalizedDrive, follow, start_pose
 from oort.parameters import read_parameters
 from oort.recording import Pose, open_recording
 from oort.replay import scans_with_progress
-from oort.tool import run_tool
+from oort.tool import add_pose_argument, parse_arguments, run_tool
 
 
 def write_localization(
@@ -87,9 +87,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("map", help="base path of the saved map")
     parser.add_argument("input", help="the recording, as for oort replay")
     parser.add_argument("--start", choices=STARTS, default=STARTS[0], help="how to begin (default: global, a search)")
-    parser.add_argument(
-        "--pose", type=float, nargs=3, metavar=("X", "Y", "THETA"), help="the sensor's pose for --start pose [m, rad]"
-    )
+    add_pose_argument(parser, "--pose", "the sensor's pose for --start pose [m, rad]")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
     parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
@@ -131,7 +129,7 @@ def _run(args: argparse.Namespace) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line tool; exit code 2 for an input or a call that cannot be used."""
     parser = _parser()
-    args = parser.parse_args(argv)
+    args = parse_arguments(parser, argv)
     if (args.start == "pose") != (args.pose is not None):
         parser.error("--start pose and --pose go together")
     return run_tool("oort localize", lambda: _run(args), args.input)

@@ -4,7 +4,7 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from oort.export import write_picture
 from oort.parameters import read_parameters
 from oort.poses import compose
 from oort.recording import Pose
-from oort.tool import run_tool
+from oort.tool import add_pose_argument, parse_arguments, run_tool
 
 __all__ = ["Merged", "main", "merge", "merge_maps"]
 
@@ -32,11 +32,12 @@ _SWITCHED_OFF = 0.5
 """A switch below this counts as rejected by the solution (REQUIREMENTS 4.1)."""
 
 
-def merge(first: str, second: str, target: str, parameters: Parameters, at: Pose | None = None) -> str:
-    """Joins the map at a path with another and saves it, with a picture beside it; returns what to print.
+def merge(first: str, second: str, target: str, parameters: Parameters, at: Pose | None = None) -> Iterator[str]:
+    """Joins the map at a path with another and saves it, with a picture beside it; yields what to print on the way.
 
     ``at`` is about where the second map's origin lies on the first [m, rad]; found if not given. Raises InputError if
-    two of the paths are of the same map, MapFileError, and what merge_maps() raises.
+    two of the paths are of the same map, MapFileError, what merge_maps() raises, and at last, with the map saved and
+    all told, OortError if the picture cannot be written.
     """
     paths = [normalise_map_path(path) for path in (first, second, target)]
     if paths[0] == paths[1]:
@@ -44,18 +45,16 @@ def merge(first: str, second: str, target: str, parameters: Parameters, at: Pose
     if paths[2] in paths[:2]:
         raise InputError(f"{target}: the new map would replace one of the two; choose another place")
     maps = load_map(first), load_map(second)
+    yield f"{first}: {len(maps[0])} nodes"
+    yield f"{second}: {len(maps[1])} nodes"
+    yield "looking for where the second map lies on the first, and for closures across"
     merged = merge_maps(*maps, parameters, at)
     map_ = merged.map
     save_map(target, map_)
-    lines = [
-        f"{first}: {len(maps[0])} nodes",
-        f"{second}: {len(maps[1])} nodes",
-        *_told(merged),
-        f"{target}: {len(map_)} nodes",
-    ]
+    yield from _told(merged)
+    yield f"{target}: {len(map_)} nodes"
     if _draw(f"{paths[2]}.png", merged, map_, parameters):
-        lines.append(f"wrote {paths[2]}.png")
-    return "\n".join(lines)
+        yield f"wrote {paths[2]}.png"
 
 
 def _told(merged: Merged) -> list[str]:
@@ -108,12 +107,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("first", metavar="A", help="the path of the first map, whose frame and places are kept")
     parser.add_argument("second", metavar="B", help="the path of the second map")
     parser.add_argument("target", metavar="OUT", help="where the new map goes")
-    parser.add_argument(
-        "--at",
-        type=float,
-        nargs=3,
-        metavar=("X", "Y", "THETA"),
-        help="about where the second map's origin lies on the first [m, rad]; found if not given",
+    add_pose_argument(
+        parser, "--at", "about where the second map's origin lies on the first [m, rad]; found if not given"
     )
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     return parser
@@ -121,12 +116,13 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> None:
     at = (args.at[0], args.at[1], args.at[2]) if args.at else None
-    print(merge(args.first, args.second, args.target, read_parameters(args.params), at))
+    for line in merge(args.first, args.second, args.target, read_parameters(args.params), at):
+        print(line, flush=True)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
-    args = _parser().parse_args(argv)
+    """The command line; returns the exit status: 0, or that of run_tool()."""
+    args = parse_arguments(_parser(), argv)
     return run_tool("oort merge", lambda: _run(args), args.first)
 
 

@@ -23,7 +23,7 @@ from oort.report import Stopwatch, format_table
 from oort.results import Drive, write_results
 from oort.schedule import make_schedule
 from oort.session import Session
-from oort.tool import run_tool
+from oort.tool import add_pose_argument, parse_arguments, run_tool
 from oort.trajectory import TrajectoryRecorder
 
 
@@ -180,13 +180,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>)")
     parser.add_argument("--map", metavar="BASE", help="base path of the saved map (default: DIR/map)")
     parser.add_argument("--resume", metavar="BASE", help="a saved map to go on with")
-    parser.add_argument(
-        "--pose",
-        type=float,
-        nargs=3,
-        metavar=("X", "Y", "THETA"),
-        help="the sensor's pose in it at the start [m, rad]; searched for if not given",
-    )
+    add_pose_argument(parser, "--pose", "the sensor's pose in it at the start [m, rad]; searched for if not given")
     parser.add_argument("--events", metavar="FILE", help="the service calls of the drive, a JSON list of t, call, args")
     parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
     parser.add_argument(
@@ -224,7 +218,7 @@ def _run(args: argparse.Namespace) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line tool; exit code 2 for an input or a call that cannot be used."""
     parser = _parser()
-    args = parser.parse_args(argv)
+    args = parse_arguments(parser, argv)
     if args.resume is None and args.pose is not None:
         parser.error("--pose is where the robot starts on the map of --resume, which is missing")
     return run_tool("oort replay", lambda: _run(args), args.input)

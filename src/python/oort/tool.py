@@ -1,15 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""How every command line tool ends."""
+"""What the command line tools have in common: arguments that several take, and how each ends."""
 
+import argparse
+import math
+import re
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from oort.errors import OortError
+from oort.export.files import decimal
+
+_PLAIN = re.compile(r"-\d+|-\d*\.\d+")
+"""The negative numbers that argparse does not take for options."""
 
 
 def run_tool(name: str, run: Callable[[], None], reading: str = "") -> int:
-    """Runs a tool; the exit status is 0, or 2 for an error, which is printed without a traceback.
+    """Runs a tool; the exit status is 0, or 2 for an error and 130 for Ctrl-C, told without a traceback.
 
     ``reading`` is the file that an error of the operating system is about if it names none.
     """
@@ -21,4 +29,30 @@ def run_tool(name: str, run: Callable[[], None], reading: str = "") -> int:
     except OSError as error:
         print(f"{name}: {error.filename or reading}: {error.strerror}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print(f"{name}: interrupted", file=sys.stderr)
+        return 128 + signal.SIGINT
     return 0
+
+
+def add_pose_argument(parser: argparse.ArgumentParser, name: str, meaning: str) -> None:
+    """An option that takes a pose, x, y [m] and theta [rad]; parse_arguments() must read it."""
+    parser.add_argument(name, type=float, nargs=3, metavar=("X", "Y", "THETA"), help=meaning)
+
+
+def parse_arguments(parser: argparse.ArgumentParser, argv: Sequence[str] | None) -> argparse.Namespace:
+    """Parses arguments (default: those of the process), among them numbers such as -1e-3.
+
+    argparse takes negative numbers for options unless they are plain decimals, so they are made plain.
+    """
+    return parser.parse_args([_plain(argument) for argument in (sys.argv[1:] if argv is None else argv)])
+
+
+def _plain(argument: str) -> str:
+    if not argument.startswith("-") or _PLAIN.fullmatch(argument):
+        return argument
+    try:
+        number = float(argument)
+    except ValueError:
+        return argument
+    return decimal(number) if math.isfinite(number) else argument
