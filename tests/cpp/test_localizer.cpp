@@ -122,6 +122,9 @@ TEST(Localizer, RefusesWhatIsNotAPose) {
   EXPECT_THROW(localizer.start_at({NAN, 0.0, 0.0}, kRoughly), InputError);
   EXPECT_THROW(localizer.start_at({}, Eigen::Matrix3d::Zero()), InputError);
   EXPECT_THROW(localizer.add_scan(see(make_room(), {}, 0.0), {0.0, INFINITY, 0.0}), InputError);
+  EXPECT_THROW(localizer.add_scan(see(make_room(), {}, 0.0), {2e6, 0.0, 0.0}), InputError);
+  EXPECT_THROW(localizer.start_at({0.0, -2e6, 0.0}, kRoughly), InputError);
+  EXPECT_EQ(localizer.statistics().scans, 0u);
 }
 
 }  // namespace

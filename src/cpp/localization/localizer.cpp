@@ -10,6 +10,7 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/mapping/frsm_setup.hpp"
+#include "oort/mapping/map_check.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
@@ -92,10 +93,9 @@ Localizer::Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& 
 }
 
 void Localizer::start_at(const Pose2& T_map_sensor, const Eigen::Matrix3d& covariance) {
-  const bool sound = is_finite(T_map_sensor) && covariance.allFinite() &&
-                     Eigen::LLT<Eigen::Matrix3d>(covariance).info() == Eigen::Success;
-  if (!sound) {
-    throw InputError("localisation: the start pose is not finite or its covariance not positive definite");
+  check_reach(T_map_sensor, "localisation: the start pose");
+  if (!covariance.allFinite() || Eigen::LLT<Eigen::Matrix3d>(covariance).info() != Eigen::Success) {
+    throw InputError("localisation: the start pose's covariance is not positive definite");
   }
   start_searching();
   T_map_sensor_ = T_map_sensor;
@@ -116,9 +116,7 @@ void Localizer::start_searching() {
 }
 
 LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
-  if (!is_finite(T_odom_base)) {
-    throw InputError("localisation: the odometry pose is not finite; check the transform odom -> base");
-  }
+  check_reach(T_odom_base, "localisation: the odometry pose", "check the transform odom -> base");
   PlacedScan now{to_point_cloud(scan), T_odom_base * T_base_sensor_};
   if (compensates_motion_) {
     now.cloud = compensate_motion(std::move(now.cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));

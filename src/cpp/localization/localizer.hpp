@@ -47,13 +47,13 @@ class Localizer {
   Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& parameters, const Pose2& T_base_sensor);
 
   /// Says about where the sensor is at the next scan, with its covariance along the axes of the map.
-  /// Throws InputError if either is not finite or the covariance is not positive definite.
+  /// Throws InputError if the pose is not finite or more than 100 km off, or the covariance is not positive definite.
   void start_at(const Pose2& T_map_sensor, const Eigen::Matrix3d& covariance);
   /// Forgets the pose.
   void start_searching();
 
   /// Takes the next scan, as Mapper::add_scan does. Throws InputError if the scan's limits, the pose or the motion are
-  /// not finite; nothing changes then.
+  /// not finite, or the pose is more than 100 km off; nothing changes then.
   LocalizationState add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base = {});
 
   LocalizationState state() const { return state_; }

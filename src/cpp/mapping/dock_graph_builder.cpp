@@ -32,13 +32,13 @@ double needed_hits(const DockGraphBuilderParameters& p, std::size_t query_nodes)
 }
 
 /// The first of the nodes up to the query that may not stand for the dock. The way back would match itself, however
-/// bent: twice as many nodes as are matched are left out, but for the dock's own.
+/// bent: twice as many nodes as are matched are left out, or the later half of a short drive.
 std::uint64_t first_of_the_way_back(const DockGraphBuilderParameters& p, std::uint64_t dock, std::uint64_t query,
                                     std::size_t query_nodes) {
   std::uint64_t apart = static_cast<std::uint64_t>(query_nodes);
   if (has_fallback(p)) {
-    const std::uint64_t way = query > dock ? query - dock : 0;
-    apart = std::max(apart, std::min<std::uint64_t>(2 * static_cast<std::uint64_t>(p.dock_match_submap_size), way));
+    const std::uint64_t half = query > dock ? (query - dock + 1) / 2 : 0;
+    apart = std::max(apart, std::min<std::uint64_t>(2 * static_cast<std::uint64_t>(p.dock_match_submap_size), half));
   }
   return query + 1 - std::min(apart, query + 1);
 }
