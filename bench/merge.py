@@ -31,6 +31,7 @@ from oort.trajectory import TrajectoryRecorder
 from relocalisation import Homes
 from trials.closures import ON, false_closures
 from trials.drives import Recipe
+from trials.tables import print_table
 from trials.truth import true_nodes
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -202,15 +203,6 @@ def summarise(found: list[dict[str, Any]]) -> list[str]:
     ]
 
 
-def _print_table(head: Sequence[str], rows: dict[str, list[str]]) -> None:
-    if not rows:
-        return
-    print(f"| {' | '.join(head)} |", "|" + "---|" * len(head), sep="\n")
-    for name, cells in rows.items():
-        print(f"| {name} | {' | '.join(cells)} |")
-    print()
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--logs", nargs="*", choices=LOGS, default=LOGS, metavar="LOG", help=", ".join(LOGS))
@@ -235,10 +227,10 @@ def main() -> int:
                 print(f"{row}: home {seed}: {found[-1]}", file=sys.stderr, flush=True)
             rows[row] = summarise(found)
     print(", ".join(f"{key} {value}" for key, value in describe(args.params).items()) + "\n")
-    _print_table(
+    print_table(
         ("drive", "all relations, m / deg", "across the halves (how many)", "views that fit / contradict"), logs
     )
-    _print_table(
+    print_table(
         ("maps", "joined", "ATE, median / worst m", "first alone", "second alone", "true closures across, kept / off",
          "false", "CPU s"), rows
     )  # fmt: skip

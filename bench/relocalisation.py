@@ -29,6 +29,7 @@ from oort.poses import Array, between, compose, wrap_angle
 from oort.recording import Scan
 from oort.simulate import Drive
 from trials.drives import DriveStore, Recipe, recording_of
+from trials.tables import print_table
 from trials.truth import true_nodes
 
 WRONG, WRONG_HEADING = 0.1, np.radians(5.0)  # [m], [rad]
@@ -242,13 +243,6 @@ def summarise_follow(drives: list[dict[str, Any]]) -> list[str]:
     ]
 
 
-def _print_table(head: Sequence[str], rows: dict[str, list[str]]) -> None:
-    print(f"| {' | '.join(head)} |", "|" + "---|" * len(head), sep="\n")
-    for name, cells in rows.items():
-        print(f"| {name} | {' | '.join(cells)} |")
-    print()
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     rows = [*QUERY_ROWS, *FOLLOW_ROWS]
@@ -278,13 +272,11 @@ def main() -> int:
             results["rows"][row] = figures
             (keep / "relocalisation.json").write_text(json.dumps(results, indent=1) + "\n")
     print(", ".join(f"{key} {value}" for key, value in results["about"].items()) + "\n")
-    if asked:
-        _print_table(("where", "answers", "wrong", "refused", "off, P50 / P95 mm", "ms, P50 / P99"), asked)
-    if followed:
-        _print_table(
-            ("start", "drives", "ATE, median / worst m", "silently off", "tracking / uncertain / lost", "jumps",
-             "ms, P50 / P99"), followed
-        )  # fmt: skip
+    print_table(("where", "answers", "wrong", "refused", "off, P50 / P95 mm", "ms, P50 / P99"), asked)
+    print_table(
+        ("start", "drives", "ATE, median / worst m", "silently off", "tracking / uncertain / lost", "jumps",
+         "ms, P50 / P99"), followed
+    )  # fmt: skip
     return 0
 
 

@@ -18,7 +18,7 @@ POOR_BY = 0.1
 """A closure that is not false, but off by more than this [m], bends the map."""
 
 ON = 0.5
-"""A switch at least at this value counts as on (REQUIREMENTS 4.1)."""
+"""A switch at least at this value counts as on: it is no closer to 0, off, than to 1."""
 
 
 def false_closures(map_: Map, truth: Array) -> NDArray[np.bool_]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prints summaries as Markdown tables, and how two runs differ."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -147,6 +147,16 @@ _TABLES = (
         },
     ),
 )
+
+
+def print_table(head: Sequence[str], rows: Mapping[str, Sequence[str]]) -> None:
+    """Prints rows of cells by their names, and nothing if there is none."""
+    if not rows:
+        return
+    print(f"| {' | '.join(head)} |", "|" + "---|" * len(head), sep="\n")
+    for name, cells in rows.items():
+        print(f"| {name} | {' | '.join(cells)} |")
+    print()
 
 
 def tables(rows: Rows) -> Iterator[str]:

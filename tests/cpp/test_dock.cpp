@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-// Links between a node on the dock and the dock's own node (REQUIREMENTS O-88, O-89, C-14).
+// Links between a node on the dock and the dock's own node.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>

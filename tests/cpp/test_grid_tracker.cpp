@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-// cartographer_matcher: following a sensor on probability grids, and what is believed of it (REQUIREMENTS C-19).
+// cartographer_matcher: following a sensor on probability grids, and what is believed of it.
 #include <gtest/gtest.h>
 
 #include <cmath>

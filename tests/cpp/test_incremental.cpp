@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-// How a node hangs on the nodes before it (REQUIREMENTS O-84, O-85).
+// How a node hangs on the nodes before it.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-// The back end after Cartographer: Huber's loss, and landmarks seen between nodes (REQUIREMENTS B-7, B-8).
+// The back end after Cartographer: Huber's loss, and landmarks seen between nodes.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-// Where loops are looked for (REQUIREMENTS O-86).
+// Where loops are looked for.
 #include <gtest/gtest.h>
 
 #include "mapping_fixtures.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-// Which matches close a loop (REQUIREMENTS O-87, C-17, C-22). The rules are tried with one match, whose hits and
+// Which matches close a loop. The rules are tried with one match, whose hits and
 // whose distance from what the graph expects are known, and thresholds just on either side of them.
 #include <gtest/gtest.h>
 

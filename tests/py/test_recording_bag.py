@@ -167,7 +167,7 @@ def test_a_tilted_laser_is_refused(tmp_path: Path) -> None:
 
 def test_a_laser_that_moves_on_the_base_is_refused(tmp_path: Path) -> None:
     bag = drive(Bag()).tf(10.0, "base", "laser").tf(11.0, "base", "laser", (0.5, 0, 0)).scan(10.5)
-    with pytest.raises(InputError, match=r"base -> laser .* varies by 0\.50 m"):
+    with pytest.raises(InputError, match=r"base -> laser .* its laser \(frame laser\) varies by 0\.50 m"):
         open_recording(bag.ros1(tmp_path / "a.bag"))
 
 

@@ -173,7 +173,8 @@ def test_a_gyro_counts_only_if_asked_for(tmp_path: Path) -> None:
 
 def test_an_imu_that_is_missing_or_ambiguous(tmp_path: Path) -> None:
     path = turning().scan(0.5).ros1(tmp_path / "none.bag")
-    with pytest.raises(InputError, match=r"no topic of type sensor_msgs/msg/Imu; the bag has: /scan"):
+    expected = r"no topic of type sensor_msgs/msg/Imu; the bag has: /scan.*; use_imu asks for one: set use_imu to false"
+    with pytest.raises(InputError, match=expected):
         open_recording(path, parameters=parameters(use_imu=True))
     path = with_gyro().imu(4.0, (0, 0, 0), topic="/imu2").ros1(tmp_path / "two.bag")
     with pytest.raises(InputError, match=r"several topics with IMU messages; .*--imu-topic.*: /imu, /imu2"):
@@ -184,6 +185,17 @@ def test_an_imu_that_is_missing_or_ambiguous(tmp_path: Path) -> None:
     log.write_text(flaser("1.0", [1.0] * 180) + "\n")
     with pytest.raises(ParameterError, match="no IMU"):
         open_recording(log, imu_topic="/imu")
+    assert any(
+        "use_imu has no effect" in note for note in open_recording(log, parameters=parameters(use_imu=True)).notes
+    )
+    for without in (None, parameters()):
+        assert not any("use_imu" in note for note in open_recording(log, parameters=without).notes)
+
+
+def test_an_imu_that_moves_on_the_base_is_refused(tmp_path: Path) -> None:
+    bag = with_gyro(frame="imu").tf(1.0, "base", "imu", (0.5, 0.0, 0.0), roll_yaw_quaternion(math.pi, 0.0))
+    with pytest.raises(InputError, match=r"base -> imu .* its IMU \(frame imu\) varies by 0\.50 m .* the IMU .* fixed"):
+        opened(bag, tmp_path, use_imu=True)
 
 
 def test_an_imu_without_numbers(tmp_path: Path) -> None:

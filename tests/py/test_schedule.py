@@ -106,7 +106,19 @@ def test_a_scan_has_the_odometry_that_the_log_says_it_had(tmp_path: Path) -> Non
     assert schedule.take(last) is last
 
 
-@pytest.mark.parametrize("rest", [[[1, 2]], [[1, 2, 3], [[1, 2, 3]]], [[1, 2, "x"], None], [None, None]])
+@pytest.mark.parametrize(
+    "rest",
+    [
+        [[1, 2]],
+        [[1, 2, 3], [[1, 2, 3]]],
+        [[1, 2, 3], {}],
+        [[1, 2, 3], 7],
+        [[1, 2, "x"], None],
+        [[1, 2, 10**400], None],
+        [{}, None],
+        [None, None],
+    ],
+)
 def test_a_log_with_odometry_that_cannot_be(rest: list[object]) -> None:
     schedule = LoggedSchedule([Event(0.0, SCAN, [scan(1.0).stamp, *rest])], Made())
     with pytest.raises(InputError, match="cannot be"):

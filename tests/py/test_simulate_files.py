@@ -182,7 +182,14 @@ def test_a_sweep_and_a_gyro_by_the_command(tmp_path: Path, capsys: pytest.Captur
     words = ["--seed", "2", "--minutes", "0", "--no-picture", "--out", str(tmp_path)]
     assert main([*words, "--name", "plain"]) == 0
     assert main([*words, "--name", "gyro", "--gyro"]) == 0
+    assert "CARMEN" not in capsys.readouterr().out
     assert main([*words, "--name", "sweep", "--sweep", "0.09"]) == 0
+    assert "no CARMEN log" in capsys.readouterr().out
+    assert sorted(path.name for path in tmp_path.glob("sweep*")) == [
+        "sweep.bag",
+        "sweep.events.json",
+        "sweep.truth.tum",
+    ]
     for ending in (".clf", ".truth.tum"):  # the gyro leaves all else as it is
         assert (tmp_path / f"gyro{ending}").read_bytes() == (tmp_path / f"plain{ending}").read_bytes()
     counts = {}

@@ -45,7 +45,7 @@ struct SwitchableEdge {
   /// sets it.
   double firmness = 1.0;
 
-  /// Whether it is believed (REQUIREMENTS 4.1).
+  /// Whether it is believed: the switch is at least as close to 1 as to 0.
   bool is_on() const { return switch_value >= 0.5; }
 };
 

@@ -19,15 +19,15 @@ struct DockPlace {
 };
 
 /// The dock nearest to a node: of the locations in the namespace "dock", or, without any, the first node of the node's
-/// segment (REQUIREMENTS C-14).
+/// segment.
 DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query);
 
 /// Says again of a loaded map's dock closures how firm they are. Of all closures they alone lead from the older node to
-/// the newer one (REQUIREMENTS O-49, C-24), and only what was matched is firm.
+/// the newer one, as in maps of the original format, and only what was matched is firm.
 void make_dock_closures_firm(Map& map, double firmness);
 
 /// Links a node at the dock to the dock's own node by matching what was last seen with what was seen when the dock was
-/// first left (REQUIREMENTS O-88).
+/// first left (docs/loops.md#the-dock).
 class DockGraphBuilder {
  public:
   explicit DockGraphBuilder(const Parameters& parameters);

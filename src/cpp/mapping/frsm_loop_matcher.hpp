@@ -8,7 +8,7 @@
 
 namespace oort {
 
-/// By FRSM: roughly over the whole window by branch and bound, then finely around the best (REQUIREMENTS O-87).
+/// By FRSM: roughly over the whole window by branch and bound, then finely around the best.
 class FrsmLoopMatcher : public LoopMatcher {
  public:
   FrsmLoopMatcher(const Parameters& parameters, const LoopScale& scale);

@@ -40,7 +40,7 @@ struct LinkParameters {
 LinkParameters link_parameters(const IncrementalGraphBuilderParameters& parameters);
 
 /// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
-/// (REQUIREMENTS O-84, O-85).
+/// (docs/architecture.md, the way of a scan).
 class IncrementalGraphBuilder {
  public:
   explicit IncrementalGraphBuilder(const Parameters& parameters);

@@ -90,7 +90,7 @@ struct Difference {
   double angle;
 };
 
-/// The rules of the documented match_filter (REQUIREMENTS O-87, C-17, C-22); the reason of a refusal, or "".
+/// The rules of the match_filter (docs/parameters.md tells each threshold); the reason of a refusal, or "".
 std::string refusal(const MatchFilterParameters& filter, double hits, const Difference& difference, bool is_close,
                     bool is_opposite) {
   if (is_close) {

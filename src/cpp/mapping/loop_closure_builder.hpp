@@ -33,7 +33,7 @@ struct LoopSearch {
   bool is_adaptive() const { return window_sigmas > 0.0; }
 };
 
-/// Looks for places seen before and measures where the newest node stands in their submaps (REQUIREMENTS O-86, O-87).
+/// Looks for places seen before and measures where the newest node stands in their submaps (docs/loops.md).
 ///
 /// How far it looks follows from how well the graph knows where the newest node is, as seen from the candidate. Where
 /// that is well, one scan is matched. Where it is not, one scan of a short-range sensor looks like too many places: the

@@ -15,7 +15,7 @@
 namespace oort {
 namespace {
 
-// Variance of x, y and theta of a scan that nothing was matched with: FRSM's value for its first scan (FRSM.md 9).
+// Variance of x, y and theta of a scan that nothing was matched with: FRSM's value for its first scan.
 constexpr double kUnmatchedVariance = 0.1;
 
 // So many nodes in a row that only odometry places, and the scan matcher starts afresh.

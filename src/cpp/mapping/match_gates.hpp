@@ -8,7 +8,7 @@
 namespace oort {
 
 /// Why the match of a scan that becomes a node is not to be believed, given the motion by odometry alone from its
-/// anchor to it, by the gates of the matcher that `parameters` chooses (REQUIREMENTS O-85, C-19); empty when it is.
+/// anchor to it, by the gates of the matcher that `parameters` chooses (match_filtering, or sm_*); empty when it is.
 std::string match_refusal(const IncrementalGraphBuilderParameters& parameters, const TrackedScan& node,
                           const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry);
 

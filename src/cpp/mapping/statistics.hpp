@@ -32,7 +32,7 @@ struct TrackingCounts {
   std::uint64_t changes = 0;  ///< from one state to another
 };
 
-/// What the solutions made of the closures that were accepted (REQUIREMENTS 4.1: a switch below 0.5 is off).
+/// What the solutions made of the closures that were accepted (a switch below 0.5 is off).
 struct SolvedCounts {
   std::uint64_t kept = 0;          ///< on at the last solution
   std::uint64_t contradicted = 0;  ///< off at the last solution

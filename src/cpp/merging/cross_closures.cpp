@@ -19,7 +19,8 @@ constexpr double kJointSigma = 0.15;       // [m]
 constexpr double kJointSigmaTheta = 0.05;  // [rad]
 
 // Afterwards it is as wide as the first link of a session: closures alone say where the chains lie. FRSM's variance of
-// a scan that nothing was matched with, which resume_scanmatch_cov_scale scales (FRSM.md 9).
+// a scan that nothing was matched with, which resume_scanmatch_cov_scale scales, as in
+// mapping/mapper.cpp.
 constexpr double kUnmatchedVariance = 0.1;
 
 // What does not surprise waits until so many closures were added as are a twentieth of the nodes.

@@ -34,7 +34,7 @@ constexpr double kAsGood = 0.9;
 constexpr std::uint64_t kLeastKept = 3;
 constexpr double kLeastKeptShare = 0.5;
 
-// What a given place is.
+// Of a given place that cannot be.
 const char* const kCheckPlace =
     "check X Y THETA: where the second map's origin lies on the first, in metres and radians";
 

@@ -16,7 +16,7 @@ ACCEPTED, CONTRADICTED = "accepted", "contradicted"
 MOST = 200_000
 """attempts that are kept at most: the newest; some 30 MB"""
 
-_ON = 0.5  # a closure whose switch is below is off (REQUIREMENTS 4.1)
+_ON = 0.5  # a closure whose switch is below is off: closer to 0, off, than to 1
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ def scan_of_entry(scan: Scan, args: Sequence[Any]) -> Scan | None:
         _, odometry, sweep = args
         ends = None if sweep is None else (_pose(sweep[0]), _pose(sweep[1]))
         return replace(scan, odometry=_pose(odometry), sweep=ends)
-    except (TypeError, ValueError, IndexError) as error:
+    except (TypeError, ValueError, LookupError, OverflowError) as error:
         raise InputError(f"the entry of the scan {scan.stamp} cannot be: {list(args[1:])!r}") from error
 
 

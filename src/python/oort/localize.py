@@ -16,7 +16,8 @@ from oort.export import write_picture, write_tum
 from oort.export.files import write_atomically
 from oort.localization import STARTS, LocalizedDrive, follow, start_pose
 from oort.parameters import read_parameters
-from oort.recording import Pose, open_recording
+from oort.recording import Pose
+from oort.recording.arguments import add_recording_arguments, recording_of
 from oort.replay import scans_with_progress
 from oort.tool import add_pose_argument, parse_arguments, run_tool
 
@@ -89,12 +90,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--start", choices=STARTS, default=STARTS[0], help="how to begin (default: global, a search)")
     add_pose_argument(parser, "--pose", "the sensor's pose for --start pose [m, rad]")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
-    parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
-    parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
-    parser.add_argument(
-        "--imu-topic", metavar="TOPIC", help="a bag's IMU: its gyro takes the place of odometry's turns"
-    )
-    parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
+    add_recording_arguments(parser)
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>-localized)")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser
@@ -103,14 +99,7 @@ def _parser() -> argparse.ArgumentParser:
 def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
     map_ = load_map(args.map)
-    recording = open_recording(
-        args.input,
-        scan_topic=args.scan_topic,
-        odom_frame=args.odom_frame,
-        imu_topic=args.imu_topic,
-        max_range=args.max_range,
-        parameters=parameters,
-    )
+    recording = recording_of(args, parameters)
     start: Pose | None = None
     if args.start == "pose":
         start = tuple(args.pose)

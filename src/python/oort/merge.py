@@ -29,7 +29,7 @@ __all__ = ["Merged", "main", "merge", "merge_maps"]
 
 _FOUND_BY = {"given": "where --at says", "dock": "at the dock", "search": "by a search of the whole map"}
 _SWITCHED_OFF = 0.5
-"""A switch below this counts as rejected by the solution (REQUIREMENTS 4.1)."""
+"""A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
 
 
 def merge(first: str, second: str, target: str, parameters: Parameters, at: Pose | None = None) -> Iterator[str]:

@@ -18,7 +18,8 @@ from oort.errors import InputError, OortError
 from oort.events import Event, read_events
 from oort.localization import find_start
 from oort.parameters import read_parameters
-from oort.recording import Pose, Recording, Scan, open_recording
+from oort.recording import Pose, Recording, Scan
+from oort.recording.arguments import add_recording_arguments, recording_of
 from oort.report import Stopwatch, format_table
 from oort.results import Drive, write_results
 from oort.schedule import make_schedule
@@ -171,12 +172,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("input", help="the recording")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
-    parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
-    parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
-    parser.add_argument(
-        "--imu-topic", metavar="TOPIC", help="a bag's IMU: its gyro takes the place of odometry's turns"
-    )
-    parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
+    add_recording_arguments(parser)
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>)")
     parser.add_argument("--map", metavar="BASE", help="base path of the saved map (default: DIR/map)")
     parser.add_argument("--resume", metavar="BASE", help="a saved map to go on with")
@@ -193,14 +189,7 @@ def _parser() -> argparse.ArgumentParser:
 def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
     events = read_events(args.events) if args.events else []
-    recording = open_recording(
-        args.input,
-        scan_topic=args.scan_topic,
-        odom_frame=args.odom_frame,
-        imu_topic=args.imu_topic,
-        max_range=args.max_range,
-        parameters=parameters,
-    )
+    recording = recording_of(args, parameters)
     resume = None
     if args.resume:
         pose = tuple(args.pose) if args.pose else find_start(load_map(args.resume), parameters, recording)

@@ -23,7 +23,7 @@ from oort.session import Session
 from oort.trajectory import TrajectoryRecorder
 
 _SWITCHED_OFF = 0.5
-"""A switch below this counts as rejected by the solution (REQUIREMENTS 4.1)."""
+"""A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
 
 
 @dataclass(frozen=True)

@@ -146,7 +146,7 @@ def test_pause_and_resume_from_paused(shell: Shell, client: Client, robot: Robot
     assert located(client, "", "end") == pytest.approx(truth.tolist(), abs=0.05)
 
 
-# ---- what published clients rely on (REQUIREMENTS 1.3) ----
+# ---- what published clients rely on ----
 
 
 def test_1_start_with_and_without_a_path(client: Client, robot: Robot, tmp_path: Path) -> None:

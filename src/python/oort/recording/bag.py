@@ -107,8 +107,9 @@ def _choose(path: Path, reader: AnyReader, kind: str, wanted: str | None, what: 
         known = f"there are {what.split()[-1]} on: {', '.join(topics) or 'no topic'}"
         raise InputError(f"{path}: no {what} on {wanted}; {known}")
     if not topics:
+        advice = "; use_imu asks for one: set use_imu to false, or record an IMU" if kind == _IMU else ""
         others = sorted({f"{connection.topic} ({connection.msgtype})" for connection in reader.connections})
-        raise InputError(f"{path}: no topic of type {kind}; the bag has: {', '.join(others[:20]) or 'nothing'}")
+        raise InputError(f"{path}: no topic of type {kind}; the bag has: {', '.join(others[:20]) or 'nothing'}{advice}")
     if len(topics) > 1:
         raise InputError(f"{path}: several topics with {what}; choose one with {option}: {', '.join(topics)}")
     return topics[0]

@@ -80,10 +80,11 @@ class FrameTree:
             way.append(came_from[way[-1]])
         return way[::-1]
 
-    def mount(self, base: str, sensor: str) -> NDArray[np.float64]:
-        """T_base_sensor (4, 4). Raises InputError if there is no transform or it varies."""
+    def mount(self, base: str, sensor: str, kind: str = "laser") -> NDArray[np.float64]:
+        """T_base_sensor (4, 4) of a kind of sensor. Raises InputError if there is no transform or it varies."""
         up, down = self.ways(base, sensor)
-        return np.asarray(np.linalg.inv(self._fixed(up)) @ self._fixed(down), dtype=np.float64)
+        named = f"{kind} (frame {sensor})"
+        return np.asarray(np.linalg.inv(self._fixed(up, named)) @ self._fixed(down, named), dtype=np.float64)
 
     def ways(self, base: str, sensor: str) -> tuple[list[str], list[str]]:
         """From base and from sensor up to where they meet (way_up). Raises InputError if they do not."""
@@ -96,13 +97,13 @@ class FrameTree:
             )
         return self.way_up(base, common), self.way_up(sensor, common)
 
-    def _fixed(self, way: list[str]) -> NDArray[np.float64]:
-        """T_last_first of a way up whose transforms must not vary."""
+    def _fixed(self, way: list[str], sensor: str) -> NDArray[np.float64]:
+        """T_last_first of a way up whose transforms must not vary, as they carry a sensor."""
         total = np.eye(4)
         for child, parent in pairwise(way):
             link = self.links[child][parent]
             poses = link.by_time()[:, 1:]
-            variation = describe_variation(parent, child, poses[0], poses)
+            variation = describe_variation(parent, child, poses[0], poses, sensor)
             if variation:
                 raise InputError(variation)
             total = link.first @ total
@@ -114,15 +115,15 @@ class FrameTree:
         return ", ".join(sorted(pairs)[:20]) or "no transforms"
 
 
-def describe_variation(parent: str, child: str, first: ArrayLike, others: ArrayLike) -> str:
-    """Says so if poses (x [m], y [m], theta [rad]) of a link that must be fixed differ from the first; else empty."""
+def describe_variation(parent: str, child: str, first: ArrayLike, others: ArrayLike, sensor: str = "laser") -> str:
+    """Says so if poses (x, y [m], theta [rad]) of a link that carries a sensor differ from the first; else empty."""
     changes = np.abs(between(first, np.atleast_2d(others))).max(axis=0)
     moved, turned = changes[:2].max(), changes[2]
     if moved <= _FIXED[0] and turned <= _FIXED[1]:
         return ""
     return (
-        f"the transform {parent} -> {child} between the robot's base and its laser varies by {moved:.2f} m and "
-        f"{math.degrees(turned):.1f} degrees; the laser must be fixed on the base"
+        f"the transform {parent} -> {child} between the robot's base and its {sensor} varies by {moved:.2f} m and "
+        f"{math.degrees(turned):.1f} degrees; the {sensor} must be fixed on the base"
     )
 
 

@@ -39,7 +39,7 @@ def upward(tree: FrameTree, base: str, frame: str) -> Vector | None:
         tree.ways(base, frame)
     except InputError:
         return None
-    x, y, z = tree.mount(base, frame)[2, :3].tolist()
+    x, y, z = tree.mount(base, frame, "IMU")[2, :3].tolist()
     return x, y, z
 
 

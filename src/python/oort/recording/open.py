@@ -4,6 +4,7 @@
 
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 
 from oort._core import Parameters
@@ -57,7 +58,11 @@ def open_recording(
             raise ParameterError(f"{path} is a CARMEN log: it has no frames, so leave out odom_frame")
         if imu_topic is not None:
             raise ParameterError(f"{path} is a CARMEN log: it has no IMU, so leave out imu_topic")
-        return read_carmen(path, name=recording_name(path), message=scan_topic, max_range=max_range)
+        recording = read_carmen(path, name=recording_name(path), message=scan_topic, max_range=max_range)
+        if parameters is not None and parameters.get("use_imu"):
+            note = "a CARMEN log has no IMU: use_imu has no effect, turns are those of odometry"
+            recording = replace(recording, notes=(*recording.notes, note))
+        return recording
     return read_bag(
         path,
         name=recording_name(path),

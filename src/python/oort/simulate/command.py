@@ -45,6 +45,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     print(_summary(drive))
     for path in paths:
         print(path)
+    if sensor.sweep_seconds:
+        print("no CARMEN log: it could not tell when each beam of a sweep was measured")
     return 0
 
 
@@ -64,7 +66,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--fov", type=float, default=180.0, metavar="DEG", help="field of view, straight ahead")
     parser.add_argument("--beams", type=int, metavar="N", help="beams over it; one per degree if not given")
     parser.add_argument("--max-range", type=float, default=3.0, metavar="M", help="metres that the sensor sees")
-    parser.add_argument("--sweep", type=float, default=0.0, metavar="S", help="seconds that the beams of a scan take")
+    parser.add_argument("--sweep", type=float, default=0.0, metavar="S", help="seconds that a scan takes; then no .clf")
     parser.add_argument("--gyro", action="store_true", help="the robot has a gyro: /imu in the bag")
     parser.add_argument("--minutes", type=float, default=3.0, help="drive on after the tour until about then")
     parser.add_argument("--no-person", dest="person", action="store_false", help="nobody crosses the view")

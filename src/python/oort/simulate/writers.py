@@ -23,6 +23,7 @@ Write = Callable[[Drive, Path], None]
 def write_drive(drive: Drive, folder: Path, name: str, picture: bool = True) -> list[Path]:
     """Write ``name``.bag, .clf, .truth.tum, .events.json and, if wanted, .png into a folder, which is made.
 
+    There is no .clf of a sensor that sweeps, for a CARMEN log cannot tell when each beam was measured.
     Files of the same name are replaced, each only when its successor is complete. Returns the paths. Raises OSError.
     """
     writes: dict[str, Write] = {
@@ -31,6 +32,8 @@ def write_drive(drive: Drive, folder: Path, name: str, picture: bool = True) -> 
         ".truth.tum": write_truth,
         ".events.json": write_events,
     }
+    if drive.config.sensor.sweep_seconds > 0.0:
+        del writes[".clf"]
     if picture:
         writes[".png"] = draw_home
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""How a command line says which recording to open, and how."""
+
+import argparse
+
+from oort._core import Parameters
+from oort.recording.open import open_recording
+from oort.recording.types import Recording
+
+
+def add_recording_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of open_recording(); the recording itself is to be an argument called ``input``."""
+    parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
+    parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
+    parser.add_argument(
+        "--imu-topic", metavar="TOPIC", help="a bag's IMU: its gyro takes the place of odometry's turns"
+    )
+    parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
+
+
+def recording_of(args: argparse.Namespace, parameters: Parameters) -> Recording:
+    """Opens what the arguments name. Raises what open_recording() raises."""
+    return open_recording(
+        args.input,
+        scan_topic=args.scan_topic,
+        odom_frame=args.odom_frame,
+        imu_topic=args.imu_topic,
+        max_range=args.max_range,
+        parameters=parameters,
+    )
