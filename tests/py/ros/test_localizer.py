@@ -210,6 +210,28 @@ def test_initial_pose_and_search(ros: Core, tmp_path: Path, base: str, ears: Ear
     initial.unregister()
 
 
+@pytest.mark.parametrize("call", ["relocalize", "map/load"])
+def test_a_pose_of_before_is_told_no_more(ros: Core, tmp_path: Path, base: str, ears: Ears, call: str) -> None:
+    """Not even while no scan comes: neither by tf nor as localised."""
+    with localizer(ros, tmp_path, f"_map:={base}", "_start:=dock"), Robot(COURSE) as robot:
+        robot.wait_for_node(f"/{NAME}")
+        robot.laser_on = True
+        until(lambda: ears.states[-1:] == ["tracking"], "it is tracking")
+        until(lambda: bool(ears.map_to_odom), "map -> odom is told")
+        robot.laser_on = False
+        time.sleep(0.5)  # the last scan is worked off
+        Path(f"{base}.last_pose.json").unlink(missing_ok=True)
+        assert answer("is_localized", GetBool).data
+        answer(call, *((Empty,) if call == "relocalize" else (SetString, base)))
+        assert not answer("is_localized", GetBool).data
+        until(lambda: ears.states[-1:] == ["searching"], "its state is told")
+        time.sleep(0.2)
+        count = len(ears.map_to_odom)
+        time.sleep(0.5)
+        assert len(ears.map_to_odom) == count
+    assert not Path(f"{base}.last_pose.json").exists(), "nor kept"
+
+
 def test_mapping_goes_on_where_the_localizer_sees_the_robot(ros: Core, tmp_path: Path, base: str, ears: Ears) -> None:
     mapping = Node(ros, "oort_slam", [sys.executable, "-m", "oort.ros"], tmp_path / "oort_slam.log", tmp_path)
     try:

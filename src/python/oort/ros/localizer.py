@@ -69,7 +69,6 @@ class LocalizerNode:
         self._mount: Pose | None = None
         self._seed: tuple[Pose, NDArray[np.float64]] | None = None  # T_map_sensor, until the laser's mount is known
         self._localizer: Localizer | None = None
-        self._reported_frame: Pose | None = None  # seen from the frame of the latest scan's odometry
         self._last = Sighting()
         self._figures = Figures()
         self._load(base)
@@ -197,18 +196,29 @@ class LocalizerNode:
         started = time.monotonic()
         scan, mount = item.scan, self._mount
         assert mount is not None  # what resolved the scan has set it
+        localizer = self._localizer_at(mount)
+        localizer.add_scan(*scan.arguments)
+        self._see(Sighting.of(localizer, scan.reported_frame))
+        self._figures.mapped(None, time.monotonic() - started)
+        self._tell(scan, mount)
+        self._figures.delays.add(1e3 * (time.monotonic() - item.arrived))
+
+    def _localizer_at(self, mount: Pose) -> Localizer:
+        """The localiser, begun where it is to begin; ``mount`` is T_base_sensor."""
         if self._localizer is None:
             self._localizer = Localizer(self._reference, self._parameters, mount)
         if self._seed is not None:
-            self._localizer.start_at(*self._seed)
-            self._seed = None
-        localizer = self._localizer
-        localizer.add_scan(*scan.arguments)
-        self._reported_frame = scan.reported_frame
-        before, self._last = self._last.state, Sighting.of(localizer)
-        self._figures.mapped(None, time.monotonic() - started)
-        self._tell(scan, mount, before)
-        self._figures.delays.add(1e3 * (time.monotonic() - item.arrived))
+            seed, self._seed = self._seed, None
+            self._localizer.start_at(*seed)
+        return self._localizer
+
+    def _see(self, sighting: Sighting) -> None:
+        """From here on this is told; what was told before is no more on its way out."""
+        with self._tf_lock:
+            before, self._last = self._last.state, sighting
+        if sighting.state != before:
+            rospy.loginfo("%s (support %.2f)", sighting.state, sighting.support)
+            self._state.publish(sighting.state)
 
     def _leave_out(self, reason: str, why: str) -> None:
         told = self._figures.drops.add(reason, why)
@@ -228,7 +238,11 @@ class LocalizerNode:
             else:
                 base, covariance = item.args
                 self._seed = self._sensor_at(base), covariance
+            if self._mount is not None:
+                self._see(Sighting.of(self._localizer_at(self._mount)))  # the pose of before holds no more
         except Exception as error:  # the caller's
+            if item.name == "start_at":
+                rospy.logwarn("%s", error)  # a topic has no caller who hears of it
             item.result.set_exception(error)
             return
         item.result.set_result(None)  # type: ignore[arg-type]
@@ -241,11 +255,8 @@ class LocalizerNode:
 
     # ---- what goes out ----
 
-    def _tell(self, scan: Scan, mount: Pose, before: str) -> None:
+    def _tell(self, scan: Scan, mount: Pose) -> None:
         last = self._last
-        if last.state != before:
-            rospy.loginfo("%s (support %.2f)", last.state, last.support)
-            self._state.publish(last.state)
         if last.T_map_odom is None or last.covariance is None:
             return
         self._tell_tf()
@@ -262,12 +273,13 @@ class LocalizerNode:
     def _tell_tf(self) -> None:
         """map -> odom, dated one period ahead; nothing while lost, or while another program tells it."""
         with self._tf_lock:
-            pose = None if self._last.state == "lost" else self._last.T_map_odom
+            last = self._last
+            pose = None if last.state == "lost" else last.T_map_odom
             stamp = rospy.Time.now() + rospy.Duration(_TF_PERIOD)
             if pose is None or stamp == self._last_tf or self._transforms.is_localised():
                 return
             self._last_tf = stamp
-            pose = odom_pose_of(pose, self._reported_frame)
+            pose = odom_pose_of(pose, last.reported_frame)
             self._broadcaster.sendTransform(transform(self._map_frame, self._odom_frame, stamp, pose))
 
     def _tell_health(self) -> None:

@@ -26,14 +26,22 @@ class Sighting:
     covariance: NDArray[np.float64] | None = None
     """(3, 3) of T_map_sensor, along the axes of the map; None while searching"""
     statistics: Mapping[str, Any] = field(default_factory=dict)
+    reported_frame: Pose | None = None
+    """of the scan, with which T_map_odom goes; see Scan"""
 
     @staticmethod
-    def of(localizer: Localizer) -> "Sighting":
-        """At its last scan."""
+    def of(localizer: Localizer, reported_frame: Pose | None = None) -> "Sighting":
+        """As it is now; ``reported_frame`` is that of its last scan."""
         pose = localizer.T_map_sensor
         covariance = None if pose is None else localizer.covariance
         return Sighting(
-            localizer.state, localizer.support, pose, localizer.T_map_odom, covariance, localizer.statistics
+            localizer.state,
+            localizer.support,
+            pose,
+            localizer.T_map_odom,
+            covariance,
+            localizer.statistics,
+            reported_frame,
         )
 
 
