@@ -134,6 +134,47 @@ TEST(GyroOdometry, AtRestItIsAtRest) {
   for (const TimedPose& pose : odometry.take()) EXPECT_EQ(pose.pose.theta, 1.0);
 }
 
+/// A gyro and odometry that tell the same of a base which turns by 1 rad/s after it stood for two seconds.
+void turn(GyroOdometry& odometry, int begin, int end, double set_back = 0.0) {
+  for (int k = begin; k < end; ++k) {
+    odometry.add_gyro(kStep * k - set_back, kBias + (k >= 100 ? 1.0 : 0.0));
+    odometry.add_odometry(kStep * k - set_back, {0.0, 0.0, k > 100 ? kStep * 0.5 * (k - 100) : 0.0});
+  }
+}
+
+TEST(GyroOdometry, AWrongStampCostsAMoment) {
+  GyroOdometry odometry;
+  turn(odometry, 0, 200);
+  odometry.add_gyro(1e9, 0.0);
+  turn(odometry, 200, 300);
+  odometry.add_gyro(1.0, 0.0);  // much too late
+  turn(odometry, 300, 400);
+  EXPECT_LE(odometry.steps_by_odometry(), 80U);  // the 75 before the bias is known, and a few
+  EXPECT_GE(odometry.steps_by_gyro(), 320U);
+}
+
+TEST(GyroOdometry, GoesOnWhereTheClockIsSetBack) {
+  GyroOdometry odometry;
+  turn(odometry, 0, 200);
+  const std::vector<TimedPose> before = odometry.take();
+  const double bias = odometry.bias().value();
+  odometry.set_back(kStep * 200 - 2.0);
+  turn(odometry, 200, 300, 2.0);
+  const std::vector<TimedPose> after = odometry.take();
+  ASSERT_EQ(after.size(), 100U);
+  EXPECT_NEAR(after.front().time, 2.0, 1e-9);
+  EXPECT_NEAR(wrap_angle(after.front().pose.theta - before.back().pose.theta), 0.5 * kStep, 1e-9);  // odometry's turn
+  EXPECT_NEAR(wrap_angle(after.back().pose.theta - after.front().pose.theta), 99 * kStep, 1e-3);    // the gyro's
+  EXPECT_EQ(odometry.bias().value(), bias);
+}
+
+TEST(GyroOdometry, KeepsRatesForAWhile) {
+  GyroOdometry odometry;
+  for (int k = 0; k <= 1500; ++k) odometry.add_gyro(kStep * k, kBias);  // 30 s
+  for (int k = 0; k <= 1500; ++k) odometry.add_odometry(kStep * k, {});
+  EXPECT_NEAR(static_cast<double>(odometry.steps_by_gyro()), 950.0, 3.0);  // of the last 20 s, but for the bias' second
+}
+
 TEST(GyroOdometry, LeavesOutWhatIsLateAndRefusesNonsense) {
   GyroOdometry odometry;
   odometry.add_gyro(1.0, 0.1);

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Odometry as it comes in: what a scan waits for, and whose poses it must not get."""
 
+import math
 import time
 
 import pytest
@@ -126,3 +127,36 @@ def test_a_gyro_turns_the_odometry_and_the_map_is_told_in_the_frame_that_is_repo
     odometry.add(6.2, (3.0, 0.0, 2.0))
     assert odometry.place(6.1, now) is None
     assert odometry.place(6.1, now, last_resort=True) is not None
+
+
+def turning(odometry: Odometry, begin: float, end: float, set_back: float = 0.0) -> None:
+    """A robot that stands for two seconds and then turns by 1 rad/s, of which the wheels tell a half."""
+    for k in range(round(50 * begin), round(50 * end)):
+        turned = max(0.0, 0.02 * k - 2.0)
+        odometry.add(0.02 * k - set_back, (3.0, 0.0, 0.5 * turned))
+        odometry.add_gyro(0.02 * k - set_back, 1.01 if turned > 0.0 else 0.01)
+
+
+def heading(odometry: Odometry, stamp: float) -> float:
+    placement = odometry.place(stamp, time.monotonic())
+    assert placement is not None
+    return placement.odometry[2]
+
+
+def test_a_gyro_whose_clock_is_set_back() -> None:
+    """Neither the frame of its odometry jumps, nor is its bias learned again."""
+    odometry = Odometry(use_gyro=True)
+    turning(odometry, 0.0, 4.5)
+    before = heading(odometry, 4.48)
+    turning(odometry, 4.5, 6.5, set_back=2.0)
+    assert heading(odometry, 2.5) == pytest.approx(before + 0.02, abs=0.02)
+    assert math.remainder(heading(odometry, 4.0) - before, math.tau) == pytest.approx(1.5, abs=0.04)
+
+
+@pytest.mark.parametrize("stamp", [1e9, 4.0, 0.5])
+def test_a_gyro_with_one_wrong_stamp(stamp: float) -> None:
+    odometry = Odometry(use_gyro=True)
+    turning(odometry, 0.0, 3.0)
+    odometry.add_gyro(stamp, 0.0)
+    turning(odometry, 3.0, 5.0)
+    assert heading(odometry, 4.9) == pytest.approx(2.9, abs=0.06)

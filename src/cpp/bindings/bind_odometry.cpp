@@ -55,6 +55,8 @@ void bind_gyro(py::module_& m) {
           },
           "The poses that are settled since the last call: time [s], x, y, theta of T_odom_base.")
       .def("flush", &GyroOdometry::flush, "Settles what is left, as the gyro tells nothing more.")
+      .def("set_back", &GyroOdometry::set_back, py::arg("time"),
+           "Odometry's clock was set back to a time [s]: poses not taken are gone, pose and bias go on.")
       .def_property_readonly("bias", &GyroOdometry::bias,
                              "Of the gyro [rad/s]; None until the base stood for a second.")
       .def_property_readonly("steps_by_gyro", &GyroOdometry::steps_by_gyro, "Steps that have the gyro's turn.")

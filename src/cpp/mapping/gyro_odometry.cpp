@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
@@ -12,6 +13,8 @@ namespace oort {
 namespace {
 
 constexpr double kPatience = 1.0;  // [s] that odometry waits for a gyro that is behind
+constexpr double kSetBack = 1.0;   // [s] by which a message is older than the last where the clock was set back
+constexpr double kKept = 20.0;     // [s] of rates that are kept while no odometry comes
 constexpr double kMostGap = 0.1;   // [s] between two rates; over a longer one the turn may have been anything
 
 // Slower, the base stands: wheels that stand are seen at rest, but for noise of stamps and of encoders.
@@ -30,8 +33,12 @@ void GyroOdometry::add_gyro(double time, double yaw_rate) {
   if (!std::isfinite(time) || !std::isfinite(yaw_rate)) {
     throw InputError("gyro: a time or yaw rate is not a finite number; check what publishes the IMU's messages");
   }
-  if (!rates_.empty() && time <= rates_.back().time) return;
+  if (!rates_.empty() && time <= rates_.back().time) {
+    if (time >= rates_.back().time - kSetBack) return;
+    rates_.clear();  // or they would shut out all that comes
+  }
   rates_.push_back({time, yaw_rate});
+  while (rates_.front().time < time - kKept) rates_.pop_front();
   settle();
 }
 
@@ -39,8 +46,7 @@ void GyroOdometry::add_odometry(double time, const Pose2& T_odom_base) {
   if (!std::isfinite(time) || !is_finite(T_odom_base)) {
     throw InputError("odometry: a time or pose is not a finite number; check what publishes odom -> base");
   }
-  const bool is_first = !last_ && waiting_.empty();
-  if (!is_first && time <= newest_odometry_) return;
+  if (time <= newest_odometry_) return;
   newest_odometry_ = time;
   waiting_.push_back({time, T_odom_base});
   settle();
@@ -53,6 +59,13 @@ std::vector<TimedPose> GyroOdometry::take() {
 void GyroOdometry::flush() {
   for (const TimedPose& pose : waiting_) step(pose);
   waiting_.clear();
+}
+
+void GyroOdometry::set_back(double time) {
+  flush();
+  settled_.clear();
+  newest_odometry_ = -std::numeric_limits<double>::infinity();
+  if (!rates_.empty() && rates_.back().time > time + kSetBack) rates_.clear();
 }
 
 std::optional<double> GyroOdometry::bias() const {
@@ -72,6 +85,9 @@ void GyroOdometry::settle() {
 void GyroOdometry::step(const TimedPose& now) {
   if (!last_) {
     pose_ = now.pose;
+  } else if (now.time <= last_->time) {  // the clock was set back
+    pose_ = pose_ * between(last_->pose, now.pose);
+    still_ = 0.0;
   } else {
     Pose2 motion = between(last_->pose, now.pose);
     const double duration = now.time - last_->time;

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,7 +22,9 @@ struct TimedPose {
 /// cover, or that comes before the bias is known, keeps odometry's turn (docs/motion.md).
 ///
 /// What comes of it depends on the order of messages within each of the two streams, not on how they mingle, as long as
-/// the gyro is no more than a second behind. Messages not newer than the last of their stream are left out.
+/// the gyro is no more than a second behind. Messages not newer than the last of their stream are left out, but a rate
+/// that is older by more than a second begins the gyro's stream anew: either the last one's stamp was wrong, or the
+/// clock was set back. Rates are kept for 20 s.
 class GyroOdometry {
  public:
   /// Adds a yaw rate of the base [rad/s], counter-clockwise, at a time [s]. Throws InputError if one is not finite.
@@ -35,6 +38,10 @@ class GyroOdometry {
 
   /// Settles what is left, as the gyro tells nothing more.
   void flush();
+
+  /// Odometry's clock was set back to a time [s]: what it tells next goes on from the last pose, and the bias is kept.
+  /// Poses that were not taken are gone.
+  void set_back(double time);
 
   /// What the gyro tells while the base stands [rad/s], once it stood for a second.
   std::optional<double> bias() const;
@@ -58,7 +65,7 @@ class GyroOdometry {
   std::vector<TimedPose> settled_;
   std::optional<TimedPose> last_;  // of odometry, as it came
   Pose2 pose_;                     // there, with the gyro's turns
-  double newest_odometry_ = 0.0;
+  double newest_odometry_ = -std::numeric_limits<double>::infinity();
   double bias_ = 0.0;
   double learned_ = 0.0;  // time that the bias was learned over [s]
   double still_ = 0.0;    // time that the base has been standing for [s]

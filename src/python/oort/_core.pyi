@@ -256,6 +256,8 @@ class GyroOdometry:
         """The poses that are settled since the last call: time [s], x, y, theta of T_odom_base."""
     def flush(self) -> None:
         """Settles what is left, as the gyro tells nothing more."""
+    def set_back(self, time: float) -> None:
+        """Odometry's clock was set back to a time [s]: poses not taken are gone, pose and bias go on."""
     @property
     def bias(self) -> float | None:
         """Of the gyro [rad/s]; None until the base stood for a second."""

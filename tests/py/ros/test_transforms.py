@@ -143,6 +143,31 @@ def test_a_gyro(told: list[None]) -> None:
     assert placement.reported_frame is not None
 
 
+def test_a_gyro_whose_transform_comes_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is taken to sit level only after a while, and only until tf tells that it hangs upside down."""
+    parameters = Parameters()
+    parameters.set("use_imu", True)
+    transforms = Transforms(parameters, lambda: None)
+    rates: list[float] = []
+    monkeypatch.setattr("oort.live.odometry.Odometry.add_gyro", lambda _self, _stamp, rate: rates.append(rate))
+    now = [time.monotonic()]
+    monkeypatch.setattr("oort.ros.transforms.time.monotonic", lambda: now[0])
+    transforms.set_transform_static(laser(), "robot")
+    assert transforms.mount(LASER) is not None
+    transforms.set_transform(odometry(100.0, (1.0, 0.0, 0.0)), "robot")
+    transforms.add_imu(imu(100.0, (0.0, 0.0, 1.0)))
+    now[0] += 4.0
+    transforms.add_imu(imu(104.0, (0.0, 0.0, 1.0)))
+    assert not rates, "tf may still tell"
+    now[0] += 2.0
+    transforms.add_imu(imu(106.0, (0.0, 0.0, 1.0)))
+    upside_down = transform("base_footprint", "imu", rospy.Time(), (0.0, 0.0, 0.0))
+    upside_down.transform.rotation = Quaternion(1.0, 0.0, 0.0, 0.0)
+    transforms.set_transform_static(upside_down, "robot")
+    transforms.add_imu(imu(107.0, (0.0, 0.0, 1.0)))
+    assert rates == [1.0, -1.0]
+
+
 def test_a_scan_that_takes_time_by_way_of_another_frame(transforms: Transforms) -> None:
     fixed = odometry(0.0, (0.5, 0.0, 0.0), "base_link", "base_footprint")
     transforms.set_transform_static(fixed, "robot")

@@ -37,7 +37,8 @@ class Odometry:
         if set_back:
             self._buffer = OdometryBuffer(_KEPT)
             self._turned = OdometryBuffer(_KEPT) if self._gyro else self._buffer
-            self._gyro = GyroOdometry() if self._gyro else None
+            if self._gyro is not None:
+                self._gyro.set_back(stamp)
             self._oldest, self._newest = math.inf, -math.inf
             self._set_back_at = self._arrived
         self._buffer.add(stamp, *pose)
@@ -49,8 +50,9 @@ class Odometry:
         return set_back
 
     def add_gyro(self, stamp: float, yaw_rate: float) -> None:
-        """Takes a yaw rate of the base [rad/s]."""
-        if self._gyro is not None:
+        """Takes a yaw rate of the base [rad/s]; one that odometry says is of the future is left out."""
+        flows = time.monotonic() < self._arrived + _AHEAD
+        if self._gyro is not None and not (flows and stamp > self._newest + _AHEAD):
             self._gyro.add_gyro(stamp, yaw_rate)
             self._take_turned(self._gyro)
 

@@ -19,6 +19,8 @@ Vector = tuple[float, float, float]
 LEVEL: Vector = (0.0, 0.0, 1.0)
 """The base's upward axis in the frame of an IMU that sits level on it."""
 
+_AHEAD = 1.0  # [s]; rates that are this much later than all odometry have a wrong stamp, or are of no use
+
 
 def angular_velocity(message: Any) -> Vector | None:
     """What a sensor_msgs/Imu tells [rad/s] along its own axes; None if it tells nothing or no numbers."""
@@ -90,9 +92,10 @@ def turned_by_gyro(
     if axis is None:
         notes.append(f"no transform leads from {base} to the IMU's frame {frame!r}: it is taken to sit level")
     odometry = GyroOdometry()
-    turns = [(time, yaw_rate((x, y, z), axis or LEVEL)) for time, x, y, z in rates.tolist()]
+    samples = np.frombuffer(link.samples, dtype=np.float64).reshape(-1, 4)
+    told, end = samples.tolist(), samples[:, 0].max() + _AHEAD
+    turns = [(time, yaw_rate((x, y, z), axis or LEVEL)) for time, x, y, z in rates[rates[:, 0] < end].tolist()]
     number = 0
-    told = np.frombuffer(link.samples, dtype=np.float64).reshape(-1, 4).tolist()
     for time, x, y, theta in told:
         while number < len(turns) and turns[number][0] <= time:
             odometry.add_gyro(*turns[number])

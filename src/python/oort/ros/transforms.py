@@ -26,6 +26,7 @@ from oort.recording.motion import Placement
 from oort.ros.messages import yaw
 
 _FRESH = 1.0  # [s]; an older pose of a localiser is not where the robot is
+_IMU_PATIENCE = 5.0  # [s] of the wall's clock that an IMU's transform may come later than its first message
 _SILENCE = 2.0  # [s] of the wall's clock without a word from the localiser, for ROS time may stand still
 
 
@@ -52,7 +53,8 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         self._on_odometry = on_odometry
         self._max_extrapolation = float(parameters.get("max_extrapolation"))
         self._use_imu = bool(parameters.get("use_imu"))
-        self._imu_axes: dict[str, Vector] = {}  # upward in the IMU's frame
+        self._imu_axes: dict[str, Vector] = {}  # upward in the IMU's frame, as tf tells it
+        self._imus: dict[str, float] = {}  # [s] time.monotonic() of the first message of each IMU's frame
         self._imu_heard = -math.inf  # [s] time.monotonic()
         self._lock = threading.Lock()  # /tf and /tf_static have threads of their own
         self._tree = FrameTree()  # the first transform of each link
@@ -144,12 +146,14 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
     def _imu_axis(self, imu_frame: str) -> Vector | None:
         """Upward in the IMU's frame; None as long as tf may still tell."""
         if imu_frame not in self._imu_axes:
+            heard = self._imus.setdefault(imu_frame, time.monotonic())
             axis = upward(self._tree, self._base, imu_frame)
-            if axis is None and not self._mounts:
-                return None
             if axis is None:
-                rospy.logwarn("no %s -> %s: the IMU is taken to sit level", self._base, imu_frame)
-            self._imu_axes[imu_frame] = axis or LEVEL
+                if not self._mounts or time.monotonic() < heard + _IMU_PATIENCE:
+                    return None
+                rospy.logwarn_once("no %s -> %s: the IMU is taken to sit level", self._base, imu_frame)
+                return LEVEL  # until tf tells
+            self._imu_axes[imu_frame] = axis
         return self._imu_axes[imu_frame]
 
     # ---- a localiser ----
