@@ -142,6 +142,30 @@ void turn(GyroOdometry& odometry, int begin, int end, double set_back = 0.0) {
   }
 }
 
+TEST(GyroOdometry, ABiasThatWasLearnedWrongIsLearnedAnew) {
+  GyroOdometry odometry;
+  std::mt19937_64 generator(2);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  for (int k = 0; k < 1500; ++k) {  // somebody turns it for its first three seconds, the wheels stand
+    odometry.add_gyro(kStep * k, kBias + noise(generator) + (k < 150 ? 0.1 : 0.0));
+    odometry.add_odometry(kStep * k, {2.0, 0.0, 0.0});
+  }
+  ASSERT_TRUE(odometry.bias());
+  EXPECT_NEAR(*odometry.bias(), kBias, 0.003);
+}
+
+TEST(GyroOdometry, ADeadGyroIsNotBelieved) {
+  GyroOdometry odometry;
+  double heading = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    odometry.add_gyro(kStep * k, 0.0);
+    heading = k < 100 ? 0.0 : kStep * 0.5 * (k - 100);
+    odometry.add_odometry(kStep * k, {0.0, 0.0, wrap_angle(heading)});
+  }
+  odometry.flush();
+  EXPECT_LT(std::abs(wrap_angle(odometry.take().back().pose.theta - heading)), 0.55) << "but for its first second";
+}
+
 TEST(GyroOdometry, AWrongStampCostsAMoment) {
   GyroOdometry odometry;
   turn(odometry, 0, 200);

@@ -27,6 +27,15 @@ constexpr double kMostLearned = 60.0;  // [s]; a bias drifts with the gyro's war
 constexpr double kMostBias = 0.2;      // [rad/s]; more is a robot that somebody turns
 constexpr double kMostChange = 0.05;   // [rad/s], the same once the bias is known
 
+// A bias that was learned wrong, as the robot was turned by hand or the gyro warmed up: what it tells at rest instead
+// for so long, and evenly as no hand turns, is the bias.
+constexpr double kRelearned = 5.0;  // [s]
+constexpr double kEvenness = 0.05;  // [rad/s]
+
+// A gyro that says exactly "no turn" for so long while odometry turns is broken: a sound one has noise.
+constexpr double kDead = 1.0;     // [s]
+constexpr double kNoTurn = 1e-6;  // [rad/s]
+
 }  // namespace
 
 void GyroOdometry::add_gyro(double time, double yaw_rate) {
@@ -96,22 +105,41 @@ void GyroOdometry::step(const TimedPose& now) {
     still_ = is_still ? still_ + duration : 0.0;
     const std::optional<double> turn = integral(last_->time, now.time);
     if (turn && still_ > kSettling) learn_bias(*turn / duration, duration);
-    const bool is_used = turn && bias() && !(is_still && std::abs(*turn / duration - bias_) <= kMostChange);
+    const bool is_dead = is_silent(turn, motion.theta, duration);
+    const bool is_used = turn && bias() && !is_dead && !(is_still && std::abs(*turn / duration - bias_) <= kMostChange);
     if (is_used) {
       const double correction = wrap_angle(*turn - bias_ * duration - motion.theta);
       const Eigen::Vector2d way = rotation(0.5 * correction) * motion.translation();  // the chord of the other arc
       motion = {way.x(), way.y(), wrap_angle(motion.theta + correction)};
     }
-    ++(turn && bias() ? steps_by_gyro_ : steps_by_odometry_);
+    ++(turn && bias() && !is_dead ? steps_by_gyro_ : steps_by_odometry_);
     pose_ = pose_ * motion;
   }
   last_ = now;
   settled_.push_back({now.time, pose_});
 }
 
+bool GyroOdometry::is_silent(const std::optional<double>& turn, double told_by_odometry, double duration) {
+  if (std::abs(told_by_odometry) <= kMostChange * duration) return silent_ >= kDead;
+  const bool says_nothing = turn && std::abs(*turn - bias_ * duration) <= kNoTurn * duration;
+  silent_ = says_nothing ? silent_ + duration : 0.0;
+  return silent_ >= kDead;
+}
+
 // A mean over the time that the base stood, the latest minute of it.
 void GyroOdometry::learn_bias(double mean_rate, double duration) {
-  if (std::abs(mean_rate - bias_) > (bias() ? kMostChange : kMostBias)) return;
+  const bool is_contrary = std::abs(mean_rate - bias_) > (bias() ? kMostChange : kMostBias);
+  if (is_contrary && std::abs(mean_rate - contrary_) <= kEvenness && std::abs(mean_rate) <= kMostBias) {
+    contrary_for_ += duration;
+    contrary_ += (mean_rate - contrary_) * std::min(1.0, duration / contrary_for_);
+    if (contrary_for_ < kRelearned) return;
+    bias_ = contrary_;
+    learned_ = std::exchange(contrary_for_, 0.0);
+    return;
+  }
+  contrary_ = mean_rate;
+  contrary_for_ = 0.0;
+  if (is_contrary) return;
   learned_ = std::min(learned_ + duration, kMostLearned);
   bias_ += (mean_rate - bias_) * std::min(1.0, duration / learned_);
 }

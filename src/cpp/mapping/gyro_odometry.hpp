@@ -19,7 +19,7 @@ struct TimedPose {
 
 /// Odometry whose turns are those of a gyro: each step keeps odometry's way and takes its turn from the integrated yaw
 /// rate, less the gyro's bias, which is learned while odometry says that the base stands. A step that the gyro does not
-/// cover, or that comes before the bias is known, keeps odometry's turn (docs/motion.md).
+/// cover, over which it is dead, or that comes before the bias is known, keeps odometry's turn (docs/motion.md).
 ///
 /// What comes of it depends on the order of messages within each of the two streams, not on how they mingle, as long as
 /// the gyro is no more than a second behind. Messages not newer than the last of their stream are left out, but a rate
@@ -58,6 +58,7 @@ class GyroOdometry {
   void settle();
   void step(const TimedPose& now);
   void learn_bias(double mean_rate, double duration);
+  bool is_silent(const std::optional<double>& turn, double told_by_odometry, double duration);
   std::optional<double> integral(double begin, double end);
 
   std::deque<Rate> rates_;
@@ -67,8 +68,11 @@ class GyroOdometry {
   Pose2 pose_;                     // there, with the gyro's turns
   double newest_odometry_ = -std::numeric_limits<double>::infinity();
   double bias_ = 0.0;
-  double learned_ = 0.0;  // time that the bias was learned over [s]
-  double still_ = 0.0;    // time that the base has been standing for [s]
+  double learned_ = 0.0;       // time that the bias was learned over [s]
+  double contrary_ = 0.0;      // what the gyro tells at rest instead of the bias [rad/s],
+  double contrary_for_ = 0.0;  // and for how long it has [s]
+  double silent_ = 0.0;        // time that odometry turned and the gyro told of no turn at all [s]
+  double still_ = 0.0;         // time that the base has been standing for [s]
   std::uint64_t steps_by_gyro_ = 0;
   std::uint64_t steps_by_odometry_ = 0;
 };

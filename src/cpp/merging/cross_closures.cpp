@@ -67,8 +67,10 @@ ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, co
       ++waiting;
     }
     if (surprise > kSurprise || waiting >= patience) {
-      optimize(map.graph, optimizer_options(parameters, kIterations));
-      waiting = 0;
+      OptimizerOptions options = optimizer_options(parameters, kIterations);
+      if (waiting < patience) options.first_free_node = begin;  // what surprises is where the new nodes lie
+      optimize(map.graph, options);
+      if (waiting >= patience) waiting = 0;
     }
   }
   const double scale = link_parameters(parameters.incremental_graph_builder).resume_scanmatch_cov_scale;
