@@ -299,6 +299,7 @@ class LocalizerNode:
             waiting_scans=waiting,
             seconds_waiting=since,
             waiting_for=self._transforms.missing(self._sensor_frame),
+            imu_trouble=self._transforms.imu_trouble(),
             map_path=self._base,
             last=self._last,
             told_by_other=self._transforms.is_localised(),

@@ -156,9 +156,10 @@ class Node(Listener):
         missing = self._transforms.missing(self._sensor_frame)
         if waiting and since > _HEALTH_PERIOD:
             rospy.logwarn_throttle(COMPLAIN, f"{missing}; {waiting} scans waiting")
-        if self._transforms.lacks_imu():
-            rospy.logwarn_throttle(COMPLAIN, "no yaw rate on imu: odometry's own turns are used")
-        health = look_over(self.live, self._scans.resolved_name, missing)
+        imu_trouble = self._transforms.imu_trouble()
+        if imu_trouble:
+            rospy.logwarn_throttle(COMPLAIN, f"odometry's own turns are used: {imu_trouble}")
+        health = look_over(self.live, self._scans.resolved_name, missing, imu_trouble)
         self._diagnostics.publish(diagnostic_array(health, rospy.get_name(), rospy.Time.now()))
 
     # ---- the graph, for people to look at ----

@@ -139,9 +139,16 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
                 odometry.add_gyro(stamp, yaw_rate(rate, axis))
         self._on_odometry()
 
-    def lacks_imu(self) -> bool:
-        """Whether an IMU is to be used and was not heard of late, while odometry was."""
-        return self._use_imu and bool(self._odometry) and time.monotonic() > self._imu_heard + _SILENCE
+    def imu_trouble(self) -> str:
+        """Why an IMU that is to be used turns nothing of odometry, and what to do; empty if it does."""
+        if not self._use_imu:
+            return ""
+        with self._lock:
+            if self._odometry and time.monotonic() > self._imu_heard + _SILENCE:
+                return f"no yaw rate on {rospy.resolve_name('imu')}; start the IMU, remap imu, or set use_imu to false"
+            way = self._tree.way_up(self._base, self._odom)
+            odometry = self._odometry.get(way[-2]) if len(way) > 1 else None
+            return "" if odometry is None else odometry.gyro_trouble()
 
     def _imu_axis(self, imu_frame: str) -> Vector | None:
         """Upward in the IMU's frame; None as long as tf may still tell."""
