@@ -183,3 +183,14 @@ def test_a_gyro_that_turns_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> N
     assert "check the IMU's rate and the clocks" in odometry.gyro_trouble()
     now[0] += 3.0
     assert not odometry.gyro_trouble(), "odometry does not flow"
+
+
+def test_a_scan_whose_beams_are_older_than_odometry() -> None:
+    """Their odometry will not come: no scan behind it has to wait for that."""
+    odometry = Odometry()
+    arrived = time.monotonic()
+    tell(odometry, 5.0, 10.0)
+    with pytest.raises(UnusableScanError, match="older than the odometry"):
+        odometry.place(5.04, arrived, (0.0, -0.1))
+    assert odometry.place(5.2, arrived, (0.0, -0.1)) is not None
+    assert odometry.place(5.04, time.monotonic(), (0.0, -0.1)) is None, "the clock may have been set back"

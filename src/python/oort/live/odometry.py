@@ -81,6 +81,8 @@ class Odometry:
             self._gyro.flush()
             self._take_turned(self._gyro)
         placement = place(lambda time_: self._turned.lookup(time_, ahead), stamp, span)
+        if placement is None and stamp + min(span) < self._oldest and arrived < self._arrived:
+            raise UnusableScanError("older than the odometry")  # a beam was measured before the stamp
         if placement is None or self._gyro is None:
             return placement and replace(placement, guessed=last_resort)
         reported = self._buffer.lookup(stamp, ahead)
