@@ -142,6 +142,7 @@ class LocalizerNode:
 
     def _on_scan(self, message: LaserScan) -> None:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
+        self._sensor_frame = self._laser.awaited(sensor_frame, self._sensor_frame)
         self._figures.arrived()
         self._inbox.add_scan(*self._laser.resolve_later(message, sensor_frame, time.monotonic()))
 

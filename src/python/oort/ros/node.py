@@ -81,14 +81,7 @@ class Node(Listener):
 
     def _resolve(self, message: LaserScan, arrived: float) -> tuple[Resolve, Resolve]:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
-        if sensor_frame != self._sensor_frame and not self._laser.frame:
-            rospy.logwarn_once(
-                "the scans are in frame %s, not in the sensor_frame %s of the parameters; using %s",
-                sensor_frame,
-                self._sensor_frame,
-                sensor_frame,
-            )
-            self._sensor_frame = sensor_frame
+        self._sensor_frame = self._laser.awaited(sensor_frame, self._sensor_frame)
         return self._laser.resolve_later(message, sensor_frame, arrived)
 
     def _laser_found(self, sensor_frame: str, mount: Pose) -> None:
