@@ -90,7 +90,7 @@ def test_a_laser_that_moves_is_told_once(transforms: Transforms, monkeypatch: py
         transforms.set_transform(odometry(1.0, (x, 0.0, 0.0), "base_footprint", LASER), "robot")
     assert transforms.mount(LASER) == mount
     assert len(warnings) == 1, "not for a millimetre, and not again"
-    assert f"base_footprint -> {LASER} between the robot's base and its laser varies by 0.09 m" in warnings[0]
+    assert f"base_footprint -> {LASER} between the robot's base and its sensor varies by 0.09 m" in warnings[0]
 
 
 # ---- odometry ----
@@ -141,6 +141,19 @@ def test_a_gyro(told: list[None]) -> None:
     assert placement is not None
     assert placement.odometry == pytest.approx((1.0, 0.0, 1.0), abs=0.02)
     assert placement.reported_frame is not None
+
+
+def test_an_imu_that_moves_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    warnings: list[str] = []
+    monkeypatch.setattr("oort.ros.transforms.rospy.logwarn", lambda text, *args: warnings.append(text % args))
+    parameters = Parameters()
+    parameters.set("use_imu", True)
+    transforms = Transforms(parameters, lambda: None)
+    for turned in (0.0, 0.001, 0.5, 1.0):
+        transforms.set_transform(odometry(1.0, (0.0, 0.0, turned), "base_footprint", "imu"), "robot")
+        transforms.add_imu(imu(100.0 + turned, (0.0, 0.0, 1.0)))
+    assert len(warnings) == 1
+    assert "base_footprint -> imu" in warnings[0]
 
 
 def test_a_gyro_whose_transform_comes_late(monkeypatch: pytest.MonkeyPatch) -> None:

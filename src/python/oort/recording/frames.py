@@ -121,8 +121,8 @@ def describe_variation(parent: str, child: str, first: ArrayLike, others: ArrayL
     if moved <= _FIXED[0] and turned <= _FIXED[1]:
         return ""
     return (
-        f"the transform {parent} -> {child} between the robot's base and its laser varies by {moved:.2f} m and "
-        f"{math.degrees(turned):.1f} degrees; the laser must be fixed on the base"
+        f"the transform {parent} -> {child} between the robot's base and its sensor varies by {moved:.2f} m and "
+        f"{math.degrees(turned):.1f} degrees; sensors must be fixed on the base"
     )
 
 

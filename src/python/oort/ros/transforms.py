@@ -60,7 +60,7 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         self._tree = FrameTree()  # the first transform of each link
         self._odometry: dict[str, Odometry] = {}  # by the child of the odometry frame
         self._mounts: dict[str, Mount] = {}
-        self._fixed: set[tuple[str, str]] = set()  # (child, parent) of the links that mounts rest on
+        self._fixed: set[tuple[str, str]] = set()  # (child, parent) of the links that sensors rest on
         self._localised: dict[str, float] = {}  # [s] time.monotonic() of the last word, by the child of the map frame
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
@@ -161,6 +161,9 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
                 rospy.logwarn_once("no %s -> %s: the IMU is taken to sit level", self._base, imu_frame)
                 return LEVEL  # until tf tells
             self._imu_axes[imu_frame] = axis
+            if imu_frame != self._base:
+                ways = self._tree.ways(self._base, imu_frame)
+                self._fixed.update(link for way in ways for link in pairwise(way))
         return self._imu_axes[imu_frame]
 
     # ---- a localiser ----
@@ -217,7 +220,7 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         return self._odometry[child]
 
     def _compare(self, parent: str, child: str, pose: Pose) -> None:
-        """Complains, once, of a link that carries the laser and moves."""
+        """Complains, once, of a link that carries a sensor and moves."""
         first = self._tree.links[child][parent].by_time()[0, 1:]
         variation = describe_variation(parent, child, first, pose)
         if variation:
