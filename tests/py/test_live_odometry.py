@@ -160,3 +160,37 @@ def test_a_gyro_with_one_wrong_stamp(stamp: float) -> None:
     odometry.add_gyro(stamp, 0.0)
     turning(odometry, 3.0, 5.0)
     assert heading(odometry, 4.9) == pytest.approx(2.9, abs=0.06)
+
+
+def test_a_gyro_that_turns_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [100.0]
+    monkeypatch.setattr("oort.live.odometry.time.monotonic", lambda: now[0])
+    odometry = Odometry(use_gyro=True)
+
+    def drive(begin: int, end: int, speed: float, late: float = 0.0) -> None:
+        for k in range(begin, end):
+            now[0] += 0.02
+            odometry.add(0.02 * k, (speed * k, 0.0, 0.0))
+            odometry.add_gyro(0.02 * k - late, 0.0)
+
+    drive(0, 200, speed=0.01)
+    assert not odometry.gyro_trouble(), "it may stand yet"
+    drive(200, 300, speed=0.01)
+    assert "let the robot stand" in odometry.gyro_trouble()
+    drive(300, 500, speed=0.0)
+    assert not odometry.gyro_trouble()
+    drive(500, 800, speed=0.0, late=30.0)
+    assert "check the IMU's rate and the clocks" in odometry.gyro_trouble()
+    now[0] += 3.0
+    assert not odometry.gyro_trouble(), "odometry does not flow"
+
+
+def test_a_scan_whose_beams_are_older_than_odometry() -> None:
+    """Their odometry will not come: no scan behind it has to wait for that."""
+    odometry = Odometry()
+    arrived = time.monotonic()
+    tell(odometry, 5.0, 10.0)
+    with pytest.raises(UnusableScanError, match="older than the odometry"):
+        odometry.place(5.04, arrived, (0.0, -0.1))
+    assert odometry.place(5.2, arrived, (0.0, -0.1)) is not None
+    assert odometry.place(5.04, time.monotonic(), (0.0, -0.1)) is None, "the clock may have been set back"

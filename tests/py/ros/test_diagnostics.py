@@ -44,6 +44,7 @@ WELL = MappingHealth(
     waiting_scans=1,
     seconds_waiting=0.02,
     waiting_for="no odom -> base_footprint since 0.0 s",
+    imu_trouble="",
     clock_jumps=0,
 )
 EMPTY = replace(
@@ -146,6 +147,11 @@ def test_without_mapping_nothing_is_missed(change: dict[str, Any], message: str)
             "14 scans wait: no odom -> base_footprint since 2.3 s; check",
         ),
         ({"drops_of_late": ["late", "odd"]}, WARN, "Scans are left out (late, odd); check"),
+        (
+            {"imu_trouble": "no yaw rate on /imu; start the IMU"},
+            WARN,
+            "Odometry's own turns are used: no yaw rate on /imu; start",
+        ),
         ({"tracking": "lost"}, WARN, "Tracking is lost"),
         ({"queue_size": 51}, WARN, "51 scans and calls are queued"),
         ({"save_error": "/full: no space left"}, ERROR, "The map was not saved (/full: no space left); "),

@@ -28,7 +28,7 @@ from oort.poses import between, compose
 from oort.recording import Scan
 from oort.ros.messages import rotation, yaw
 from ros.client import Client, Heard, figures, until
-from ros.robot import COURSE, Localiser, Robot
+from ros.robot import COURSE, LASER, Localiser, Robot
 from ros.running import Core, Node
 
 pytestmark = pytest.mark.usefixtures("rospy")
@@ -163,6 +163,16 @@ def test_it_tells_how_it_goes(ros: Core, tmp_path: Path, base: str) -> None:
             with Localiser(COURSE.T_map_odom):
                 told.wait_for(lambda message: figures(message)["map -> odom told by another"] == "yes", "it is silent")
         assert "Traceback" not in node.output
+
+
+def test_it_says_which_transform_is_missing(ros: Core, tmp_path: Path, base: str) -> None:
+    """That of the frame which the scans name, not of the parameters' sensor_frame."""
+    args = f"_map:={base}", "_start:=dock", "_sensor_frame:=nowhere", "_base_frame:=no_base"
+    with localizer(ros, tmp_path, *args), Robot(COURSE) as robot:
+        robot.wait_for_node(f"/{NAME}")
+        robot.laser_on = True
+        with Heard("/diagnostics", DiagnosticArray, f"/{NAME}") as told:
+            told.wait_for(lambda message: f"no no_base -> {LASER} " in figures(message)["waiting for"], "it tells")
 
 
 def test_it_begins_at_the_dock(ros: Core, tmp_path: Path, base: str, ears: Ears) -> None:

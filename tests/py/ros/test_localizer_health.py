@@ -27,7 +27,8 @@ SIGHTING = Sighting(
 WELL = LocalizerHealth(
     queue_size=1, scan_topic="/scan", scans_received=100, scan_rate_hz=10.0, seconds_without_scan=0.1,
     scans_processed=98, drops={}, drops_of_late=[], ms_per_scan=Spread(0.2, 1.5, 20.0), delay_ms=None,
-    waiting_scans=0, seconds_waiting=0.0, waiting_for="", map_path="/maps/home", last=SIGHTING, told_by_other=False,
+    waiting_scans=0, seconds_waiting=0.0, waiting_for="", imu_trouble="",
+    map_path="/maps/home", last=SIGHTING, told_by_other=False,
 )  # fmt: skip
 
 
@@ -56,6 +57,7 @@ def test_all_well() -> None:
         ({"last": in_state("lost")}, "The place is lost; drive slowly"),
         ({"last": in_state("searching")}, "The place is not found yet (ambiguous 3, low_support 1); drive on"),
         ({"seconds_without_scan": 3.2}, "No scan on /scan for 3.2 s; check"),
+        ({"imu_trouble": "no yaw rate on /imu; start the IMU"}, "Odometry's own turns are used: no yaw rate on /imu;"),
         ({"queue_size": 51}, "51 scans and calls are queued; "),
     ],
 )

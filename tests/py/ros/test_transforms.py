@@ -90,7 +90,7 @@ def test_a_laser_that_moves_is_told_once(transforms: Transforms, monkeypatch: py
         transforms.set_transform(odometry(1.0, (x, 0.0, 0.0), "base_footprint", LASER), "robot")
     assert transforms.mount(LASER) == mount
     assert len(warnings) == 1, "not for a millimetre, and not again"
-    assert f"base_footprint -> {LASER} between the robot's base and its laser varies by 0.09 m" in warnings[0]
+    assert f"base_footprint -> {LASER} between the robot's base and its sensor varies by 0.09 m" in warnings[0]
 
 
 # ---- odometry ----
@@ -123,7 +123,7 @@ def test_a_gyro(told: list[None]) -> None:
     parameters = Parameters()
     parameters.set("use_imu", True)
     transforms = Transforms(parameters, lambda: told.append(None))
-    assert not transforms.lacks_imu()
+    assert not transforms.imu_trouble()
     transforms.add_imu(imu(99.0, (0.0, 0.0, 1.0)))  # before tf tells how it sits
     transforms.set_transform_static(laser(), "robot")
     upside_down = transform("base_footprint", "imu", rospy.Time(), (0.0, 0.0, 0.0))
@@ -133,14 +133,27 @@ def test_a_gyro(told: list[None]) -> None:
     for step in range(200):
         transforms.set_transform(odometry(100.0 + 0.02 * step, (1.0, 0.0, 0.0)), "robot")
         if step == 0:
-            assert transforms.lacks_imu()
+            assert transforms.imu_trouble().startswith("no yaw rate on /imu; start the IMU, remap imu")
         transforms.add_imu(imu(100.0 + 0.02 * step, (0.5, 0.5, -1.0 if step > 100 else 0.0)))
         transforms.add_imu(imu(100.0 + 0.02 * step, (math.nan, 0.0, 0.0)))
-    assert not transforms.lacks_imu()
+    assert not transforms.imu_trouble()
     placement = transforms.place(103.0, time.monotonic(), SNAPSHOT)
     assert placement is not None
     assert placement.odometry == pytest.approx((1.0, 0.0, 1.0), abs=0.02)
     assert placement.reported_frame is not None
+
+
+def test_an_imu_that_moves_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    warnings: list[str] = []
+    monkeypatch.setattr("oort.ros.transforms.rospy.logwarn", lambda text, *args: warnings.append(text % args))
+    parameters = Parameters()
+    parameters.set("use_imu", True)
+    transforms = Transforms(parameters, lambda: None)
+    for turned in (0.0, 0.001, 0.5, 1.0):
+        transforms.set_transform(odometry(1.0, (0.0, 0.0, turned), "base_footprint", "imu"), "robot")
+        transforms.add_imu(imu(100.0 + turned, (0.0, 0.0, 1.0)))
+    assert len(warnings) == 1
+    assert "base_footprint -> imu" in warnings[0]
 
 
 def test_a_gyro_whose_transform_comes_late(monkeypatch: pytest.MonkeyPatch) -> None:

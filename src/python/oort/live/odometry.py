@@ -15,6 +15,7 @@ from oort.recording.motion import SNAPSHOT, Placement, place
 _KEPT = 20.0  # [s] of odometry; scans that come later than that are lost
 _BACKWARDS = 1.0  # [s]; a pose or scan that is older than the last one by more says that the clock was set back
 _AHEAD = 1.0  # [s]; scans are no more than a message's delay ahead of odometry that flows
+_GYRO_PATIENCE = 5.0  # [s] of flowing odometry without a turn of the gyro's; its bias takes 1.5 s to learn
 
 
 class Odometry:
@@ -26,13 +27,17 @@ class Odometry:
         self._gyro = GyroOdometry() if use_gyro else None
         self._buffer = OdometryBuffer(_KEPT)  # as it is reported
         self._turned = OdometryBuffer(_KEPT) if use_gyro else self._buffer  # with the gyro's turns
+        self._steps_by_gyro = 0
+        self._gyro_turned = math.inf  # by time.monotonic(), when it last did so, or might have begun to [s]
         self._oldest, self._newest = math.inf, -math.inf  # stamps that it covers [s]
         self._last_scan = self._asked_for = -math.inf  # stamps: of the last scan with a pose, and of the last one [s]
         self._arrived = self._set_back_at = self._last_scan_arrived = -math.inf  # by time.monotonic() [s]
 
     def add(self, stamp: float, pose: Pose) -> bool:
         """Takes a pose; whether it says that the clock was set back, so that all earlier ones are void."""
-        self._arrived = time.monotonic()
+        silence, self._arrived = time.monotonic() - self._arrived, time.monotonic()
+        if silence > _AHEAD:
+            self._gyro_turned = self._arrived
         set_back = stamp < self._newest - _BACKWARDS
         if set_back:
             self._buffer = OdometryBuffer(_KEPT)
@@ -59,6 +64,8 @@ class Odometry:
     def _take_turned(self, gyro: GyroOdometry) -> None:
         for time_, x, y, theta in gyro.take():
             self._turned.add(time_, x, y, theta)
+        if gyro.steps_by_gyro != self._steps_by_gyro:
+            self._steps_by_gyro, self._gyro_turned = gyro.steps_by_gyro, time.monotonic()
 
     def place(
         self, stamp: float, arrived: float, span: tuple[float, float] = SNAPSHOT, last_resort: bool = False
@@ -74,6 +81,8 @@ class Odometry:
             self._gyro.flush()
             self._take_turned(self._gyro)
         placement = place(lambda time_: self._turned.lookup(time_, ahead), stamp, span)
+        if placement is None and stamp + min(span) < self._oldest and arrived < self._arrived:
+            raise UnusableScanError("older than the odometry")  # a beam was measured before the stamp
         if placement is None or self._gyro is None:
             return placement and replace(placement, guessed=last_resort)
         reported = self._buffer.lookup(stamp, ahead)
@@ -98,6 +107,15 @@ class Odometry:
         elif arrived < self._set_back_at and stamp > self._newest + _BACKWARDS:
             raise UnusableScanError("from before the clock was set back")
         return pose
+
+    def gyro_trouble(self) -> str:
+        """Why the gyro turns nothing of the odometry that flows, and what to do; empty if it does."""
+        now = time.monotonic()
+        if self._gyro is None or now > self._arrived + _AHEAD or now < self._gyro_turned + _GYRO_PATIENCE:
+            return ""
+        if self._gyro.bias is None:
+            return "the gyro's bias is not known; let the robot stand still for two seconds"
+        return "the gyro's yaw rates do not cover odometry; check the IMU's rate and the clocks"
 
     def lack(self, name: str) -> str:
         """What scans wait for, such as "no odom -> base_footprint since 2.3 s"; ``name`` is the transform's."""

@@ -47,6 +47,8 @@ class Health(ABC):
     """of the first of them"""
     waiting_for: str
     """what they wait for, such as "no odom -> base_footprint since 2.3 s" """
+    imu_trouble: str
+    """why an IMU that is to be used turns nothing of odometry, and what to do; empty if it does, or if none is used"""
 
     @property
     @abstractmethod
@@ -75,6 +77,8 @@ class Health(ABC):
             yield WARN, f"No scan on {self.scan_topic} for {silence}; check that the laser is running"
         if self.waiting_scans and self.seconds_waiting > _PATIENCE:
             yield WARN, f"{self.waiting_scans} scans wait: {self.waiting_for}; check who publishes this transform"
+        if self.imu_trouble:
+            yield WARN, f"Odometry's own turns are used: {self.imu_trouble}"
         if self.drops_of_late:
             yield WARN, f"Scans are left out ({', '.join(self.drops_of_late)}); check the laser, odometry and clocks"
 

@@ -73,8 +73,8 @@ class MappingHealth(Health):
         yield "clock jumps", str(self.clock_jumps)
 
 
-def look_over(live: LiveSession, scan_topic: str, waiting_for: str) -> MappingHealth:
-    """How mapping goes now; ``waiting_for`` says which transform the waiting scans lack."""
+def look_over(live: LiveSession, scan_topic: str, waiting_for: str, imu_trouble: str) -> MappingHealth:
+    """How mapping goes now; ``waiting_for`` says which transform the waiting scans lack, ``imu_trouble`` as Health."""
     snapshot = live.snapshot
     figures, saver = live.figures, live.keeper.saver
     waiting, seconds_waiting = live.inbox.waiting()
@@ -102,5 +102,6 @@ def look_over(live: LiveSession, scan_topic: str, waiting_for: str) -> MappingHe
         waiting_scans=waiting,
         seconds_waiting=seconds_waiting,
         waiting_for=waiting_for,
+        imu_trouble=imu_trouble,
         clock_jumps=figures.clock_jumps,
     )

@@ -56,6 +56,18 @@ class Laser:
 
         return resolve, partial(resolve, last_resort=True)
 
+    def awaited(self, sensor_frame: str, expected: str) -> str:
+        """The frame whose scans are used or, before one could be, wait: ``expected``, unless they come in another."""
+        if self.frame or sensor_frame == expected:
+            return self.frame or expected
+        rospy.logwarn_once(
+            "the scans are in frame %s, not in the sensor_frame %s of the parameters; using %s",
+            sensor_frame,
+            expected,
+            sensor_frame,
+        )
+        return sensor_frame
+
     def _span(self, message: LaserScan) -> tuple[float, float]:
         span = beam_span(len(message.ranges), message.time_increment) if self._compensates_motion else SNAPSHOT
         if span is None:

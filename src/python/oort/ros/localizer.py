@@ -142,6 +142,7 @@ class LocalizerNode:
 
     def _on_scan(self, message: LaserScan) -> None:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
+        self._sensor_frame = self._laser.awaited(sensor_frame, self._sensor_frame)
         self._figures.arrived()
         self._inbox.add_scan(*self._laser.resolve_later(message, sensor_frame, time.monotonic()))
 
@@ -299,6 +300,7 @@ class LocalizerNode:
             waiting_scans=waiting,
             seconds_waiting=since,
             waiting_for=self._transforms.missing(self._sensor_frame),
+            imu_trouble=self._transforms.imu_trouble(),
             map_path=self._base,
             last=self._last,
             told_by_other=self._transforms.is_localised(),

@@ -81,14 +81,7 @@ class Node(Listener):
 
     def _resolve(self, message: LaserScan, arrived: float) -> tuple[Resolve, Resolve]:
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
-        if sensor_frame != self._sensor_frame and not self._laser.frame:
-            rospy.logwarn_once(
-                "the scans are in frame %s, not in the sensor_frame %s of the parameters; using %s",
-                sensor_frame,
-                self._sensor_frame,
-                sensor_frame,
-            )
-            self._sensor_frame = sensor_frame
+        self._sensor_frame = self._laser.awaited(sensor_frame, self._sensor_frame)
         return self._laser.resolve_later(message, sensor_frame, arrived)
 
     def _laser_found(self, sensor_frame: str, mount: Pose) -> None:
@@ -156,9 +149,10 @@ class Node(Listener):
         missing = self._transforms.missing(self._sensor_frame)
         if waiting and since > _HEALTH_PERIOD:
             rospy.logwarn_throttle(COMPLAIN, f"{missing}; {waiting} scans waiting")
-        if self._transforms.lacks_imu():
-            rospy.logwarn_throttle(COMPLAIN, "no yaw rate on imu: odometry's own turns are used")
-        health = look_over(self.live, self._scans.resolved_name, missing)
+        imu_trouble = self._transforms.imu_trouble()
+        if imu_trouble:
+            rospy.logwarn_throttle(COMPLAIN, f"odometry's own turns are used: {imu_trouble}")
+        health = look_over(self.live, self._scans.resolved_name, missing, imu_trouble)
         self._diagnostics.publish(diagnostic_array(health, rospy.get_name(), rospy.Time.now()))
 
     # ---- the graph, for people to look at ----

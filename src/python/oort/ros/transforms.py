@@ -60,7 +60,7 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         self._tree = FrameTree()  # the first transform of each link
         self._odometry: dict[str, Odometry] = {}  # by the child of the odometry frame
         self._mounts: dict[str, Mount] = {}
-        self._fixed: set[tuple[str, str]] = set()  # (child, parent) of the links that mounts rest on
+        self._fixed: set[tuple[str, str]] = set()  # (child, parent) of the links that sensors rest on
         self._localised: dict[str, float] = {}  # [s] time.monotonic() of the last word, by the child of the map frame
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
@@ -139,9 +139,16 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
                 odometry.add_gyro(stamp, yaw_rate(rate, axis))
         self._on_odometry()
 
-    def lacks_imu(self) -> bool:
-        """Whether an IMU is to be used and was not heard of late, while odometry was."""
-        return self._use_imu and bool(self._odometry) and time.monotonic() > self._imu_heard + _SILENCE
+    def imu_trouble(self) -> str:
+        """Why an IMU that is to be used turns nothing of odometry, and what to do; empty if it does."""
+        if not self._use_imu:
+            return ""
+        with self._lock:
+            if self._odometry and time.monotonic() > self._imu_heard + _SILENCE:
+                return f"no yaw rate on {rospy.resolve_name('imu')}; start the IMU, remap imu, or set use_imu to false"
+            way = self._tree.way_up(self._base, self._odom)
+            odometry = self._odometry.get(way[-2]) if len(way) > 1 else None
+            return "" if odometry is None else odometry.gyro_trouble()
 
     def _imu_axis(self, imu_frame: str) -> Vector | None:
         """Upward in the IMU's frame; None as long as tf may still tell."""
@@ -154,6 +161,9 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
                 rospy.logwarn_once("no %s -> %s: the IMU is taken to sit level", self._base, imu_frame)
                 return LEVEL  # until tf tells
             self._imu_axes[imu_frame] = axis
+            if imu_frame != self._base:
+                ways = self._tree.ways(self._base, imu_frame)
+                self._fixed.update(link for way in ways for link in pairwise(way))
         return self._imu_axes[imu_frame]
 
     # ---- a localiser ----
@@ -210,9 +220,9 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         return self._odometry[child]
 
     def _compare(self, parent: str, child: str, pose: Pose) -> None:
-        """Complains, once, of a link that carries the laser and moves."""
+        """Complains, once, of a link that carries a sensor and moves."""
         first = self._tree.links[child][parent].by_time()[0, 1:]
-        variation = describe_variation(parent, child, first, pose)
+        variation = describe_variation(parent, child, first, pose, "sensor")
         if variation:
             rospy.logwarn("%s; mapping goes on as if it had not moved", variation)
             self._fixed.remove((child, parent))
