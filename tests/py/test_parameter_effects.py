@@ -27,6 +27,11 @@ RARE = {
     "incremental_graph_builder.frsm_matcher.initial_search_range_xy",
     "incremental_graph_builder.frsm_matcher.initial_search_range_theta",
     "incremental_graph_builder.frsm_matcher.stationary_motion_model",
+    # third_party/frsm/tests/test_tracker.cpp has the case: this odometry is never off by so much
+    "incremental_graph_builder.frsm_matcher.max_search_range_xy",
+    "incremental_graph_builder.frsm_matcher.max_search_range_theta",
+    # tests/cpp/test_dock.cpp has the case
+    "dock_graph_builder.dock_match_least_size",
     # tests/cpp/test_loop_closure.cpp has the case
     "loop_closure_graph_builder.frsm_matcher.match_filter.match_max_dist_high",
     # tests/cpp/test_relocalizer.cpp has the case: no other place in this home looks like the right one
@@ -47,7 +52,12 @@ SETTINGS: tuple[dict[str, str | float | bool], ...] = (
         "incremental_graph_builder.odometry_model": "constant",
         "output_map.speckle_strategy": "morphological",
         "robust_kernel": "huber",
-        "loop_closure_graph_builder.candidate_search.closest_allowed_id_threshold_large": 100_000,
+        "loop_closure_graph_builder.candidate_search.closest_allowed_id_threshold_large": 1_000_000,
+    },
+    {  # odometry goes far between matches, and places many nodes alone
+        "incremental_graph_builder.odometry_model": "constant",
+        "incremental_graph_builder.match_every_scan": False,
+        "incremental_graph_builder.frsm_matcher.match_filtering.min_accept_score": 0.97,
     },
 )
 """A parameter need not count in each of these, but in one."""
@@ -68,7 +78,11 @@ CARTOGRAPHER: tuple[dict[str, str | float | bool], ...] = (
     {
         "incremental_graph_builder.scanmatcher": "cartographer_matcher",
         "loop_closure_graph_builder.scanmatcher": "branch_and_bound_matcher",
-        "loop_closure_graph_builder.candidate_search.closest_allowed_id_threshold_large": 100_000,
+        "loop_closure_graph_builder.candidate_search.closest_allowed_id_threshold_large": 1_000_000,
+    },
+    {  # two stages on grids of hits alone
+        "incremental_graph_builder.scanmatcher": "cartographer_matcher",
+        "incremental_graph_builder.cartographer_matcher.use_second_stage_matcher": True,
     },
 )
 """The same for the parameters of Cartographer's matchers."""

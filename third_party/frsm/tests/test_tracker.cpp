@@ -91,6 +91,22 @@ TEST(Tracker, ANarrowViewTurnsAsFarAsAWideOne) {
   }
 }
 
+TEST(Tracker, SearchesNoFartherThanItMay) {
+  for (const auto& [reach, is_found] : {std::pair{0.1, false}, std::pair{0.8, true}}) {
+    TrackerParams params;
+    params.max_search_range_xy = reach;
+    params.max_search_range_theta = reach;
+    Tracker tracker(params);
+    std::mt19937 random(1);
+    const Pose start{1.2, 0.9, 0.3}, end = start * Pose{0.05, 0.5, 0.5};
+    tracker.reset(start);
+    tracker.track(test::scan(test::room(), start, {}, random), 0.0, Motion{});
+    const Motion unsure{{0.0, 0.0, 0.0}, Eigen::Vector3d(0.1, 0.1, 0.1).asDiagonal()};
+    tracker.track(test::scan(test::room(), end, {}, random), 0.1, unsure);
+    EXPECT_EQ(distance(tracker.pose(), end) < 0.05 && turn(tracker.pose(), end) < 0.05, is_found) << reach;
+  }
+}
+
 TEST(Tracker, FollowsADriveWithOdometry) {
   const auto steps = drive(test::room(), 200, 1);
   Tracker tracker;
