@@ -76,4 +76,9 @@ inline Scene corridor(double length = 30.0, double width = 1.8) {
   return {{{-length / 2, -width / 2}, {length / 2, -width / 2}}, {{length / 2, width / 2}, {-length / 2, width / 2}}};
 }
 
+/// The angle between the headings of two poses [rad].
+inline double turn(const Pose& a, const Pose& b) {
+  return std::abs(wrap(a.theta - b.theta));
+}
+
 }  // namespace frsm::test

@@ -17,16 +17,13 @@ namespace {
 
 using test::kPi;
 using test::Sensor;
+using test::turn;
 
 // A map of one scan.
 Table draw(const Points& body, const Pose& pose) {
   Table table;
   table.draw(transform(pose, body), extract_contours(body, {}), pose);
   return table;
-}
-
-double turn(const Pose& a, const Pose& b) {
-  return std::abs(wrap(a.theta - b.theta));
 }
 
 void expect_sound(const Match& match) {
