@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <oort/geometry/errors.hpp>
-#include <oort/mapping/mapper.hpp>
+#include <oort/mapper/mapper.hpp>
 #include <oort/render/render.hpp>
 #include <oort/storage/map_file.hpp>
 #include <string>

@@ -10,10 +10,10 @@
 #include <tuple>
 #include <vector>
 
-#include "oort/bindings/bindings.hpp"
+#include "bindings.hpp"
 #include "oort/geometry/errors.hpp"
 #include "oort/graph/landmarks.hpp"
-#include "oort/mapping/map.hpp"
+#include "oort/map/map.hpp"
 
 namespace py = pybind11;
 

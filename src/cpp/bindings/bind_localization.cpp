@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "oort/bindings/bindings.hpp"
+#include "bindings.hpp"
 #include "oort/localization/localizer.hpp"
 #include "oort/localization/relocalizer.hpp"
 

@@ -5,8 +5,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "oort/bindings/bindings.hpp"
-#include "oort/mapping/map.hpp"
+#include "bindings.hpp"
+#include "oort/map/map.hpp"
 #include "oort/render/render.hpp"
 #include "oort/storage/map_file.hpp"
 #include "oort/storage/paths.hpp"

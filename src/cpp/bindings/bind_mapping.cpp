@@ -8,8 +8,8 @@
 #include <array>
 #include <memory>
 
-#include "oort/bindings/bindings.hpp"
-#include "oort/mapping/mapper.hpp"
+#include "bindings.hpp"
+#include "oort/mapper/mapper.hpp"
 
 namespace py = pybind11;
 

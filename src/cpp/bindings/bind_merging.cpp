@@ -3,7 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "oort/bindings/bindings.hpp"
+#include "bindings.hpp"
 #include "oort/merging/merge.hpp"
 
 namespace py = pybind11;

@@ -3,9 +3,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "oort/bindings/bindings.hpp"
-#include "oort/mapping/gyro_odometry.hpp"
-#include "oort/mapping/odometry_buffer.hpp"
+#include "bindings.hpp"
+#include "oort/odometry/gyro_odometry.hpp"
+#include "oort/odometry/odometry_buffer.hpp"
 
 namespace py = pybind11;
 

@@ -10,7 +10,7 @@
 
 #include "oort/geometry/pose2.hpp"
 #include "oort/geometry/sweep.hpp"
-#include "oort/mapping/statistics.hpp"
+#include "oort/loop_closure/statistics.hpp"
 
 namespace oort {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/pybind11.h>
 
-#include "oort/bindings/bindings.hpp"
+#include "bindings.hpp"
 #include "oort/geometry/errors.hpp"
 
 namespace py = pybind11;

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading params.json, and writing the shipped files from the one table that declares the parameters.
 
-The table is the engine's (src/cpp/parameters). ``python -m oort.parameters`` prints it and writes the files.
+The table is the engine's (src/cpp/oort/parameters). ``python -m oort.parameters`` prints it and writes the files.
 """
 
 from oort._core import ParameterEntry, Parameters, parameter_table

@@ -11,7 +11,7 @@ from oort._core import ParameterEntry, parameter_table
 
 _HEADER = """<!-- SPDX-FileCopyrightText: 2026 The Oort authors -->
 <!-- SPDX-License-Identifier: Apache-2.0 -->
-<!-- Written by `python -m oort.parameters write .` from the table in src/cpp/parameters: do not edit. -->
+<!-- Written by `python -m oort.parameters write .` from the table in src/cpp/oort/parameters: do not edit. -->
 # Parameters
 
 `params/params.json` holds the defaults, `params/kuri_original.json` the documented values, and

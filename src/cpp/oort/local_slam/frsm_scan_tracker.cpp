@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/local_slam/frsm_scan_tracker.hpp"
+
+#include "oort/matching/frsm_adapter.hpp"
+#include "oort/matching/frsm_setup.hpp"
+
+namespace oort {
+namespace {
+
+frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
+  frsm::TrackerParams params;
+  params.table = table_params(p);
+  params.contours = frsm::ContourParams::urg();
+  params.matcher = matcher_params(p);
+  params.add = p.key_scan_distance > 0.0 ? frsm::AddRule{} : frsm::AddRule::by_hits(p.add_scan_hit_thresh);
+  if (p.key_scan_distance > 0.0) {
+    params.add.hit_threshold = p.add_scan_hit_thresh;
+    params.add.key_distance = p.key_scan_distance;
+    params.add.key_angle = p.key_scan_angle;
+  }
+  params.max_num_scans = p.max_num_scans;
+  params.initial_search_range_xy = p.initial_search_range_xy;
+  params.initial_search_range_theta = p.initial_search_range_theta;
+  params.max_search_range_xy = p.max_search_range_xy;
+  params.max_search_range_theta = p.max_search_range_theta;
+  params.stationary_motion_model = p.stationary_motion_model;
+  return params;
+}
+
+}  // namespace
+
+FrsmScanTracker::FrsmScanTracker(const FrsmMatcherParameters& parameters) : tracker_(tracker_params(parameters)) {}
+
+void FrsmScanTracker::reset(const Pose2& T_local_sensor) {
+  tracker_.reset(to_frsm(T_local_sensor));
+}
+
+TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
+                                   const Eigen::Matrix3d& covariance) {
+  const frsm::Motion motion{to_frsm(T_previous_sensor), covariance};
+  const long restarts = tracker_.restarts();
+  const frsm::Match match = tracker_.track(points, time, motion);
+  TrackedScan tracked;
+  tracked.T_local_sensor = from_frsm(match.pose);
+  tracked.information = match.information;
+  tracked.covariance = match.covariance;
+  tracked.hit_fraction = match.hit_fraction;
+  tracked.degenerate = match.degenerate;
+  tracked.usable = tracker_.matched();
+  tracked.restarted = tracker_.restarts() > restarts;
+  tracked.status = frsm::to_string(match.status);
+  return tracked;
+}
+
+void FrsmScanTracker::set_pose(const Pose2& T_local_sensor) {
+  tracker_.set_pose(to_frsm(T_local_sensor));
+}
+
+}  // namespace oort

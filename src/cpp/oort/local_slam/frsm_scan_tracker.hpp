@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <frsm/tracker.hpp>
+
+#include "oort/local_slam/scan_tracker.hpp"
+
+namespace oort {
+
+/// FRSM's tracker (incremental_graph_builder.frsm_matcher).
+class FrsmScanTracker : public ScanTracker {
+ public:
+  explicit FrsmScanTracker(const FrsmMatcherParameters& parameters);
+
+  void reset(const Pose2& T_local_sensor) override;
+  TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
+                    const Eigen::Matrix3d& covariance) override;
+  void set_pose(const Pose2& T_local_sensor) override;
+
+ private:
+  frsm::Tracker tracker_;
+};
+
+}  // namespace oort

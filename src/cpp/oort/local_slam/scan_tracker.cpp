@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/local_slam/scan_tracker.hpp"
+
+#include "oort/local_slam/frsm_scan_tracker.hpp"
+#include "oort/local_slam/grid_scan_tracker.hpp"
+
+namespace oort {
+
+std::unique_ptr<ScanTracker> make_scan_tracker(const IncrementalGraphBuilderParameters& parameters) {
+  if (parameters.scanmatcher == "cartographer_matcher") {
+    return std::make_unique<GridScanTracker>(parameters.cartographer_matcher);
+  }
+  return std::make_unique<FrsmScanTracker>(parameters.frsm_matcher);
+}
+
+}  // namespace oort

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/local_slam/tracking_state.hpp"
+
+#include <algorithm>
+
+namespace oort {
+namespace {
+
+constexpr int kLostScans = 20;  // two seconds of a usual sensor
+
+}  // namespace
+
+void TrackingMonitor::hang_loosely(std::uint64_t first_node, bool is_guess) {
+  if (!is_loose_) loose_begin_ = first_node;
+  is_guess_ = is_guess || (is_loose_ && is_guess_);
+  is_loose_ = true;
+}
+
+void TrackingMonitor::look_for_tie(const Graph& graph, std::uint64_t chain_begin) {
+  if (!is_loose_) return;
+  const auto ties = [&](const SwitchableEdge& edge) {
+    return edge.is_on() && std::max(edge.i, edge.j) >= chain_begin && std::min(edge.i, edge.j) < loose_begin_;
+  };
+  is_loose_ = std::none_of(graph.switchable_edges.begin(), graph.switchable_edges.end(), ties);
+}
+
+TrackingState TrackingMonitor::update(bool missed) {
+  missed_in_a_row_ = missed ? missed_in_a_row_ + 1 : 0;
+  if (missed_in_a_row_ >= kLostScans || (is_loose_ && is_guess_)) return TrackingState::kLost;
+  return is_loose_ || missed ? TrackingState::kUncertain : TrackingState::kTracking;
+}
+
+}  // namespace oort

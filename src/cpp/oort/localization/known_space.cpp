@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/localization/known_space.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "oort/grid/range_data.hpp"
+#include "oort/loop_closure/facing.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+
+namespace oort {
+namespace {
+
+constexpr double kWall = 0.6;  // probability above which a cell is taken for a wall: hit more often than passed
+constexpr double kFree = 0.4;  // and below which for free floor
+constexpr int kSectors = 8;    // of facing
+
+OutputGridParameters grid_parameters() {
+  OutputGridParameters p{};
+  p.resolution = 0.05;
+  p.hit_probability = 0.65;
+  p.miss_probability = 0.45;
+  p.insert_free_space = true;
+  p.clear_infs = false;
+  p.inf_clear_dist = 0.0;
+  return p;
+}
+
+GridLimits limits_of(const Map& map) {
+  Eigen::AlignedBox2d box(Eigen::Vector2d::Zero());
+  const OutputGridParameters parameters = grid_parameters();
+  for (std::size_t k = 0; k < map.clouds.size(); ++k) {
+    const Pose2& pose = map.graph.nodes[k].pose;
+    box.extend(pose.translation());
+    for (const BeamEnd& end : beam_ends(map.clouds[k], pose, parameters)) box.extend(end.point);
+  }
+  const Eigen::Vector2d border = Eigen::Vector2d::Constant(2.0 * parameters.resolution);
+  return GridLimits::enclosing({box.min() - border, box.max() + border}, parameters.resolution);
+}
+
+int sector_of(const Eigen::Vector2d& normal) {
+  const double turns = std::atan2(normal.y(), normal.x()) / (2.0 * M_PI);
+  return static_cast<int>(std::lround(kSectors * (turns + 1.0))) % kSectors;
+}
+
+// The sectors within an eighth of a turn of one.
+std::uint8_t around(int sector) {
+  unsigned bits = 0;
+  for (const int step : {kSectors - 1, 0, 1}) bits |= 1U << ((sector + step) % kSectors);
+  return static_cast<std::uint8_t>(bits);
+}
+
+}  // namespace
+
+KnownSpace::KnownSpace(const Map& map) : grid_(limits_of(map)), facing_(grid_.limits().cell_count(), 0) {
+  const RangeDataInserter inserter(grid_parameters());
+  for (std::size_t k = 0; k < map.clouds.size(); ++k) {
+    inserter.insert(map.clouds[k], map.graph.nodes[k].pose, grid_);
+    add_surfaces(map.clouds[k], map.graph.nodes[k].pose);
+  }
+}
+
+void KnownSpace::add_surfaces(const PointCloud& cloud, const Pose2& T_map_sensor) {
+  const Eigen::Matrix2d R = rotation(T_map_sensor.theta);
+  for (const SurfacePoint& surface : surface_points(returns_of(cloud))) {
+    const Eigen::Vector2i cell = cell_of(T_map_sensor * surface.position);
+    if (cell.x() < 0) continue;
+    std::uint8_t& seen = facing_[limits().index(cell.x(), cell.y())];
+    seen = static_cast<std::uint8_t>(seen | (1U << sector_of(R * surface.normal)));
+  }
+}
+
+Eigen::Vector2i KnownSpace::cell_of(const Eigen::Vector2d& p_map) const {
+  const Eigen::Vector2d cell = limits().to_cells(p_map);
+  const bool inside = cell.minCoeff() >= 0.0 && cell.x() < limits().width && cell.y() < limits().height;
+  return inside ? Eigen::Vector2i(cell.cast<int>()) : Eigen::Vector2i(-1, -1);
+}
+
+double KnownSpace::probability(const Eigen::Vector2d& p_map) const {
+  const Eigen::Vector2i cell = cell_of(p_map);
+  return grid_.is_known(cell.x(), cell.y()) ? grid_.probability(cell.x(), cell.y()) : 0.5;
+}
+
+bool KnownSpace::is_wall(const Eigen::Vector2d& p_map) const {
+  return probability(p_map) > kWall;
+}
+
+bool KnownSpace::is_free(const Eigen::Vector2d& p_map) const {
+  return probability(p_map) < kFree;
+}
+
+bool KnownSpace::is_blocked(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double margin) const {
+  const Eigen::Vector2d way = to - from;
+  const double length = way.norm();
+  const double step = limits().resolution;
+  for (double at = step; at < length - margin; at += step) {
+    if (is_wall(from + way * (at / length))) return true;
+  }
+  return false;
+}
+
+KnownSpace::Facing KnownSpace::facing(const Eigen::Vector2d& p_map, const Eigen::Vector2d& normal) const {
+  const Eigen::Vector2i cell = cell_of(p_map);
+  if (cell.x() < 0) return Facing::kUnknown;
+  unsigned seen = 0;
+  for (int y = cell.y() - 1; y <= cell.y() + 1; ++y) {
+    for (int x = cell.x() - 1; x <= cell.x() + 1; ++x) {
+      if (limits().contains(x, y)) seen |= facing_[limits().index(x, y)];
+    }
+  }
+  if ((seen & around(sector_of(normal))) != 0) return Facing::kSame;
+  return (seen & around(sector_of(-normal))) != 0 ? Facing::kOther : Facing::kUnknown;
+}
+
+}  // namespace oort

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/localization/reference_map.hpp"
+
+#include <frsm/contours.hpp>
+#include <string>
+
+#include "oort/geometry/errors.hpp"
+#include "oort/loop_closure/facing.hpp"
+#include "oort/map/map_check.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+#include "oort/matching/frsm_setup.hpp"
+#include "oort/parameters/table.hpp"
+
+namespace oort {
+namespace {
+
+constexpr double kCoarseCell = 0.05;   // [m]
+constexpr double kCoarseSigma = 0.08;  // [m]; wide enough that a pose half a cell and half a step off still scores
+constexpr double kBlockMargin = 0.25;  // [m] before a return where a wall may be the one that it is on
+constexpr double kBlockedWeight = 1.0;
+constexpr double kTurnedWeight = 1.0;
+
+frsm::TableParams coarse_params(const Parameters& parameters) {
+  frsm::TableParams params = table_params(parameters.incremental_graph_builder.frsm_matcher);
+  params.cell = kCoarseCell;
+  params.sigma = kCoarseSigma;
+  return params;
+}
+
+const Map& checked(const Map& map, const Parameters& parameters) {
+  check_parameters(parameters);
+  if (map.graph.nodes.empty()) throw InputError("localisation: the map is empty; give one that was mapped and saved");
+  const std::optional<std::string> defect = find_defect(map);
+  if (defect) throw InputError("localisation: this map cannot be used: " + *defect);
+  return map;
+}
+
+}  // namespace
+
+double Support::value() const {
+  if (points == 0) return 0.0;
+  return (hits - kTurnedWeight * turned - kBlockedWeight * blocked) / points;
+}
+
+ReferenceMap::ReferenceMap(const Map& map, const Parameters& parameters)
+    : fine_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
+      coarse_(coarse_params(parameters)),
+      space_(checked(map, parameters)),
+      hit_value_(matcher_params(parameters.incremental_graph_builder.frsm_matcher).hit_value) {
+  for (std::size_t k = 0; k < map.clouds.size(); ++k) {
+    const frsm::Pose pose = to_frsm(map.graph.nodes[k].pose);
+    const frsm::Points points = returns_of(map.clouds[k]);
+    const frsm::Points world = frsm::transform(pose, points);
+    const std::vector<frsm::Contour> contours = frsm::extract_contours(points, frsm::ContourParams::urg());
+    fine_.draw(world, contours, pose);
+    coarse_.draw(world, contours, pose);
+  }
+}
+
+void ReferenceMap::weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Support& support) const {
+  const frsm::Points points = returns_of(cloud);
+  const auto hits = [&](const Eigen::Vector2d& p) {
+    return fine_.value(fine_.index(p.x()), fine_.index(p.y())) >= hit_value_;
+  };
+  for (const frsm::Point& point : points) {
+    const Eigen::Vector2d p = T_map_sensor * Eigen::Vector2d(point.x, point.y);
+    ++support.points;
+    if (space_.is_blocked(T_map_sensor.translation(), p, kBlockMargin)) {
+      ++support.blocked;
+    } else if (hits(p)) {
+      ++support.hits;
+    } else if (space_.is_free(p)) {
+      ++support.in_free;
+    }
+  }
+  const Eigen::Matrix2d R = rotation(T_map_sensor.theta);
+  for (const SurfacePoint& surface : surface_points(points)) {
+    const Eigen::Vector2d p = T_map_sensor * surface.position;
+    if (!hits(p)) continue;
+    const KnownSpace::Facing facing = space_.facing(p, R * surface.normal);
+    if (facing != KnownSpace::Facing::kUnknown) ++support.surfaces;
+    if (facing == KnownSpace::Facing::kOther) ++support.turned;
+  }
+}
+
+}  // namespace oort

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/localization/relocalizer.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <frsm/peaks.hpp>
+#include <utility>
+
+#include "oort/geometry/errors.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+#include "oort/matching/frsm_setup.hpp"
+
+namespace oort {
+namespace {
+
+constexpr double kSearchVoxel = 0.1;                          // [m] of the points that are looked for everywhere
+constexpr double kMatchVoxel = 0.05;                          // [m] of those that are matched around each peak
+constexpr double kLeastScore = 0.01;                          // that a peak can be asked for
+constexpr double kPeakRatio = 0.75;                           // of the best peak's score
+constexpr double kApart = 0.3;                                // [m] and [rad] between two places
+constexpr double kFineReach = 0.1;                            // [m] around a peak
+constexpr double kMinThetaStep = 0.01, kMaxThetaStep = 0.05;  // [rad]
+
+// One point of each cell of a lattice, the first of them: so near walls do not outweigh far ones.
+frsm::Points one_per_cell(const frsm::Points& points, double cell) {
+  struct Entry {
+    long x, y;
+    std::size_t index;
+  };
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    entries.push_back({std::lround(points[i].x / cell), std::lround(points[i].y / cell), i});
+  }
+  const auto key = [](const Entry& e) { return std::pair(e.x, e.y); };
+  std::stable_sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) { return key(a) < key(b); });
+  entries.erase(
+      std::unique(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) { return key(a) == key(b); }),
+      entries.end());
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.index < b.index; });
+  frsm::Points kept;
+  for (const Entry& entry : entries) kept.push_back(points[entry.index]);
+  return kept;
+}
+
+// The returns of all scans in the frame of the newest.
+frsm::Points join(const std::vector<PlacedScan>& scans) {
+  frsm::Points points;
+  for (const PlacedScan& scan : scans) {
+    append_transformed(returns_of(scan.cloud), between(scans.back().T_odom_sensor, scan.T_odom_sensor), points);
+  }
+  return frsm::drop_invalid(points);
+}
+
+double reach_of(const frsm::Points& points) {
+  double reach = 0.0;
+  for (const frsm::Point& p : points) reach = std::max(reach, std::hypot(p.x, p.y));
+  return reach;
+}
+
+// Turning by a step moves the farthest point by a cell.
+double theta_step(const frsm::Points& points, double cell) {
+  return std::clamp(cell / std::max(reach_of(points), cell), kMinThetaStep, kMaxThetaStep);
+}
+
+bool same_place(const Pose2& a, const Pose2& b) {
+  const Pose2 d = between(a, b);
+  return d.translation().norm() < kApart && std::abs(d.theta) < kApart;
+}
+
+}  // namespace
+
+std::string_view to_string(RelocalizationStatus status) {
+  switch (status) {
+    case RelocalizationStatus::kFound:
+      return "found";
+    case RelocalizationStatus::kTooFewPoints:
+      return "too_few_points";
+    case RelocalizationStatus::kNoMatch:
+      return "no_match";
+    case RelocalizationStatus::kLowSupport:
+      return "low_support";
+    case RelocalizationStatus::kAmbiguous:
+      return "ambiguous";
+    case RelocalizationStatus::kImprecise:
+      return "imprecise";
+  }
+  return "unknown";
+}
+
+Relocalizer::Relocalizer(std::shared_ptr<const ReferenceMap> map, const Parameters& parameters)
+    : map_(std::move(map)),
+      parameters_(parameters.localization.relocalizer),
+      min_score_(parameters.loop_closure_graph_builder.branch_and_bound_matcher.global_localization_min_score),
+      matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
+
+Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
+  if (scans.empty()) throw InputError("relocalisation: no scan was given");
+  for (const PlacedScan& scan : scans) {
+    if (!is_finite(scan.T_odom_sensor)) throw InputError("relocalisation: a scan's odometry pose is not finite");
+  }
+  Relocalization result;
+  const frsm::Points points = one_per_cell(join(scans), kMatchVoxel);
+  if (points.size() < static_cast<std::size_t>(parameters_.min_points)) {
+    result.status = RelocalizationStatus::kTooFewPoints;
+    return result;
+  }
+  bool complete = true;
+  std::vector<Hypothesis> found = hypotheses(scans, points, complete);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.support.value() > b.support.value(); });
+  if (!found.empty()) {
+    result.best = found.front();
+    const auto second = std::find_if(found.begin(), found.end(), [&](const Hypothesis& h) {
+      return !same_place(h.T_map_sensor, found.front().T_map_sensor);
+    });
+    if (second != found.end()) result.second = *second;
+  }
+  result.status = judge(result, complete);
+  return result;
+}
+
+std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
+                                                bool& complete) const {
+  const GridLimits& limits = map_->space().limits();
+  const double half_x = 0.5 * limits.width * limits.resolution;
+  const double half_y = 0.5 * limits.height * limits.resolution;
+  frsm::PeakParams search;
+  search.floor = std::max(min_score_, kLeastScore);
+  search.ratio = kPeakRatio;
+  search.apart_xy = search.apart_theta = kApart;
+  const frsm::Points sparse = one_per_cell(points, kSearchVoxel);
+  search.theta_step = theta_step(sparse, map_->coarse().params().cell);
+  const frsm::Peaks peaks =
+      frsm::find_peaks(map_->coarse(), sparse, {limits.origin_x + half_x, limits.origin_y + half_y, 0.0},
+                       {half_x, half_y, M_PI}, search);
+  complete = peaks.complete;
+  std::vector<Hypothesis> found;
+  for (const frsm::Peak& peak : peaks.peaks) {
+    const frsm::Match match =
+        matcher_.match(map_->fine(), points, peak.pose, {kFineReach, kFineReach, 2.0 * search.theta_step}, nullptr);
+    if (match.hits == 0) continue;
+    Hypothesis hypothesis{from_frsm(match.pose), match.covariance, {}};
+    for (const PlacedScan& scan : scans) {
+      map_->weigh(scan.cloud, hypothesis.T_map_sensor * between(scans.back().T_odom_sensor, scan.T_odom_sensor),
+                  hypothesis.support);
+    }
+    found.push_back(hypothesis);
+  }
+  return found;
+}
+
+RelocalizationStatus Relocalizer::judge(const Relocalization& result, bool complete) const {
+  if (!result.best) return complete ? RelocalizationStatus::kNoMatch : RelocalizationStatus::kAmbiguous;
+  const double best = result.best->support.value();
+  if (!complete) return RelocalizationStatus::kAmbiguous;
+  if (best < parameters_.min_support) return RelocalizationStatus::kLowSupport;
+  if (result.second && best - result.second->support.value() < parameters_.min_lead) {
+    return RelocalizationStatus::kAmbiguous;
+  }
+  const Eigen::Matrix2d position = result.best->covariance.topLeftCorner<2, 2>();
+  const double widest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(position).eigenvalues().maxCoeff();
+  const bool precise = std::sqrt(widest) <= parameters_.max_position_deviation &&
+                       std::sqrt(result.best->covariance(2, 2)) <= parameters_.max_heading_deviation;
+  return precise ? RelocalizationStatus::kFound : RelocalizationStatus::kImprecise;
+}
+
+}  // namespace oort

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "oort/geometry/pose2.hpp"
+#include "oort/graph/optimizer.hpp"
+#include "oort/map/map.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+/// A relative pose found between two nodes that odometry did not link.
+struct Closure {
+  std::uint64_t from = 0;
+  std::uint64_t to = 0;
+  Pose2 T_from_to;
+  Eigen::Matrix3d covariance;  ///< along the axes of node `from`
+  double hit_fraction = 0.0;
+  double firmness = 1.0;  ///< how many times as much as usual it costs to switch it off
+};
+
+/// A closure this far from what the graph expects is solved at once: 99 % of a chi-square of three degrees of freedom.
+constexpr double kSurprise = 11.345;
+
+/// Makes a closure a switchable link of the map, with its result. Returns its squared Mahalanobis distance from the
+/// poses as they are, by its own covariance.
+double add_closure(const Closure& closure, std::uint64_t edge_id, Map& map);
+
+/// How the parameters want a graph to be solved.
+OptimizerOptions optimizer_options(const Parameters& parameters, int max_iterations);
+
+}  // namespace oort

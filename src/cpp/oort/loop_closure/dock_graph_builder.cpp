@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/loop_closure/dock_graph_builder.hpp"
+
+#include <algorithm>
+
+#include "oort/loop_closure/submaps.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+#include "oort/matching/frsm_setup.hpp"
+
+namespace oort {
+namespace {
+
+// What is known without a look: the reach of the contacts and the dock's moves are limits, not deviations.
+constexpr double kSigmasOfReach = 2.0;
+
+// How far the chain is bent over the nodes that are matched, as standard deviations: matched closures in homes seen
+// with 60 degrees are off by up to 7 cm and 4 degrees where every point fits.
+constexpr double kBend = 0.03;       // [m]
+constexpr double kBendTheta = 0.02;  // [rad]
+
+/// Whether matches of fewer nodes than documented are tried.
+bool has_fallback(const DockGraphBuilderParameters& p) {
+  return p.dock_match_least_size < p.dock_match_submap_size;
+}
+
+/// Fewer nodes fit somewhere else, too, the sooner the fewer they are: as many misses are allowed less.
+double needed_hits(const DockGraphBuilderParameters& p, std::size_t query_nodes) {
+  if (!has_fallback(p)) return p.dock_match_min_hit_pct;
+  const double share = static_cast<double>(query_nodes) / p.dock_match_submap_size;
+  return p.dock_match_min_hit_pct + (1.0 - share) * (1.0 - p.dock_match_min_hit_pct);
+}
+
+/// The first of the nodes up to the query that may not stand for the dock. The way back would match itself, however
+/// bent: twice as many nodes as are matched are left out, or the later half of a short drive.
+std::uint64_t first_of_the_way_back(const DockGraphBuilderParameters& p, std::uint64_t dock, std::uint64_t query,
+                                    std::size_t query_nodes) {
+  std::uint64_t apart = static_cast<std::uint64_t>(query_nodes);
+  if (has_fallback(p)) {
+    const std::uint64_t half = query > dock ? (query - dock + 1) / 2 : 0;
+    apart = std::max(apart, std::min<std::uint64_t>(2 * static_cast<std::uint64_t>(p.dock_match_submap_size), half));
+  }
+  return query + 1 - std::min(apart, query + 1);
+}
+
+/// Up to `size` nodes around the dock, none from `way_back` to `query`: its node and those after it, then those before.
+std::vector<PlacedNode> reference_nodes(const Map& map, const Chains& chains, std::uint64_t dock, std::size_t size,
+                                        std::uint64_t way_back, std::uint64_t query) {
+  std::vector<PlacedNode> nodes;
+  const auto take = [&](const PlacedNode& placed) {
+    if (nodes.size() < size && (placed.node < way_back || placed.node > query)) nodes.push_back(placed);
+  };
+  for (const PlacedNode& placed : walk_chain(map, chains, dock, Direction::kForward, size)) take(placed);
+  const std::vector<PlacedNode> before = walk_chain(map, chains, dock, Direction::kBackward, size);
+  std::for_each(before.begin() + 1, before.end(), take);  // the dock's own node was taken
+  return nodes;
+}
+
+/// What is seen from some nodes, in the frame of what they are seen from.
+frsm::Points points_of(const Map& map, const std::vector<PlacedNode>& nodes) {
+  frsm::Points points;
+  for (const PlacedNode& placed : nodes) {
+    append_transformed(returns_of(map.clouds[placed.node]), placed.T_origin_node, points);
+  }
+  return points;
+}
+
+}  // namespace
+
+DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query) {
+  const Pose2& here = map.graph.nodes[query].pose;
+  DockPlace nearest{chains.segment_begin(query), Pose2{}};
+  double nearest_distance = -1.0;
+  for (const Location& location : map.locations) {
+    if (location.name_space != "dock") continue;
+    const Pose2 T_map_dock = map.graph.nodes[location.node_id].pose * location.T_node_location;
+    const double distance = (T_map_dock.translation() - here.translation()).norm();
+    if (nearest_distance < 0.0 || distance < nearest_distance) {
+      nearest_distance = distance;
+      nearest = {location.node_id, location.T_node_location};
+    }
+  }
+  return nearest;
+}
+
+void make_dock_closures_firm(Map& map, double firmness) {
+  for (SwitchableEdge& edge : map.graph.switchable_edges) {
+    if (edge.i > edge.j) continue;
+    const auto matched_it = [&edge](const LoopResult& result) {
+      return result.id == edge.i && result.target == edge.j && result.hit_fraction > 0.0;
+    };
+    if (std::any_of(map.loop_results.begin(), map.loop_results.end(), matched_it)) edge.firmness = firmness;
+  }
+}
+
+DockGraphBuilder::DockGraphBuilder(const Parameters& parameters)
+    : parameters_(parameters.dock_graph_builder),
+      table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
+      contours_(frsm::ContourParams::urg()),
+      matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
+
+std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chains, std::uint64_t query,
+                                              ClosureCounts& counts) const {
+  ++counts.tried;
+  const DockPlace dock = nearest_dock(map, chains, query);
+  std::string reason;
+  std::optional<Closure> closure;
+  if (dock.node == query) {
+    reason = "same_node";
+  } else {
+    const auto least = static_cast<std::size_t>(parameters_.dock_match_least_size);
+    const auto most = static_cast<std::size_t>(parameters_.dock_match_submap_size);
+    std::size_t size = walk_chain(map, chains, query, Direction::kBackward, most).size();
+    closure = match(map, chains, query, dock, size, reason);
+    for (size /= 2; !closure && size >= least; size /= 2) {
+      std::string later;  // what the documented number of nodes says is what counts
+      closure = match(map, chains, query, dock, size, later);
+      if (closure && closure->hit_fraction == 0.0) closure.reset();  // but more nodes did see something
+    }
+  }
+  if (closure) {
+    ++counts.accepted;
+  } else {
+    ++counts.refused[reason];
+  }
+  return closure;
+}
+
+std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
+                                               const DockPlace& dock, std::size_t query_size,
+                                               std::string& reason) const {
+  const std::vector<PlacedNode> query_nodes = walk_chain(map, chains, query, Direction::kBackward, query_size);
+  const std::uint64_t way_back = first_of_the_way_back(parameters_, dock.node, query, query_size);
+  const std::vector<PlacedNode> reference =
+      reference_nodes(map, chains, dock.node, static_cast<std::size_t>(parameters_.dock_submap_size), way_back, query);
+  if (reference.empty()) {
+    reason = "no_reference";
+    return std::nullopt;
+  }
+
+  // The robot touches the contacts somewhere along their size, and the dock may have been moved.
+  const double reach = std::max(parameters_.dock_contacts_size + parameters_.dock_max_translation, table_.cell);
+  const Eigen::Vector3d limits(reach, reach, parameters_.search_window_theta);
+  const double sigmas = parameters_.closure_firmness > 1.0 ? kSigmasOfReach : 1.0;  // 1 is what is documented
+  const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / sigmas).cwiseAbs2().asDiagonal()};
+  const auto submap = draw_submap(map, reference, table_, contours_);
+  const frsm::Match match = matcher_.match(*submap, points_of(map, query_nodes), prior.mean,
+                                           {reach, reach, parameters_.search_window_theta}, &prior);
+  const Pose2 T_dock_query = from_frsm(match.pose);
+  if (match.status == frsm::Status::kTooFewPoints || match.status == frsm::Status::kEmptyScan) {
+    // Nothing was seen that could speak against the contacts: the robot is at the dock, give or take their reach.
+    return Closure{dock.node, query, dock.T_node_dock, prior.covariance, 0.0};
+  }
+  if (match.hits == 0) {
+    reason = "no_overlap";
+  } else if (match.hit_fraction < needed_hits(parameters_, query_size)) {
+    reason = "hits";
+  } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
+    reason = "distance";
+  } else {
+    Eigen::Matrix3d covariance = match.covariance;
+    if (parameters_.closure_firmness > 1.0) {  // what can hardly be doubted must be honest
+      covariance += Eigen::Vector3d(kBend, kBend, kBendTheta).cwiseAbs2().asDiagonal();
+    }
+    return Closure{dock.node, query, T_dock_query, covariance, match.hit_fraction, parameters_.closure_firmness};
+  }
+  return std::nullopt;
+}
+
+}  // namespace oort

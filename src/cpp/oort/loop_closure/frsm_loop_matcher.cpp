@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/loop_closure/frsm_loop_matcher.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "oort/matching/frsm_adapter.hpp"
+#include "oort/matching/frsm_setup.hpp"
+
+namespace oort {
+namespace {
+
+// How far around the rough match the fine one looks.
+constexpr double kFineCells = 3.0;
+constexpr double kFineThetaSteps = 4.0;
+
+// Of a submap, in one piece of work: about as dear as a match.
+constexpr std::size_t kScansDrawnAtOnce = 8;
+
+frsm::Points thinned(const frsm::Points& points, std::size_t count) {
+  if (count == 0 || points.size() <= count) return points;
+  frsm::Points some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
+  return some;
+}
+
+frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const LoopScale& scale) {
+  frsm::MatcherParams params = matcher_params(p);
+  params.ambiguity_floor = scale.max_ambiguity;
+  return params;
+}
+
+frsm::TableParams loop_table_params(const FrsmMatcherParameters& p, const LoopScale& scale) {
+  frsm::TableParams params = table_params(p);
+  params.radius = std::min(params.radius, scale.reach);
+  return params;
+}
+
+}  // namespace
+
+FrsmLoopMatcher::FrsmLoopMatcher(const Parameters& parameters, const LoopScale& scale)
+    : parameters_(parameters.loop_closure_graph_builder.frsm_matcher),
+      scale_(scale),
+      table_(loop_table_params(parameters.incremental_graph_builder.frsm_matcher, scale)),
+      submaps_(table_cache(scale.submap_nodes, kSubmapCacheBytes, table_, frsm::ContourParams::urg())),
+      matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale)) {}
+
+bool FrsmLoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) const {
+  return chains.neighborhood(candidate, scale_.submap_nodes).size() <=
+         static_cast<std::size_t>(parameters_.submap_min_neighborhood_size);
+}
+
+bool FrsmLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate) {
+  return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, kScansDrawnAtOnce);
+}
+
+LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
+                                         std::uint64_t candidate, const SearchWindow& window) {
+  const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
+  const auto refused = [](const std::string& reason, const Pose2& pose, double hits) {
+    return Found{pose, Eigen::Matrix3d::Zero(), hits, reason};
+  };
+  if (is_small(chains, candidate)) return refused("small_submap", expected, 0.0);
+  const frsm::Points points =
+      thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach),
+              scale_.fine_points);
+  const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
+  const frsm::Prior prior{to_frsm(expected), window.covariance};
+  const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,
+                                           {window.xy, window.xy, window.theta}, &prior);
+  if (rough.hits == 0) return refused("no_overlap", expected, 0.0);
+  const Pose2 roughly = from_frsm(rough.pose);
+  if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
+    return refused("rough_hits", roughly, rough.hit_fraction);
+  if (rough.saturated) return refused("window_border", roughly, rough.hit_fraction);
+  if (rough.ambiguity > scale_.max_ambiguity) return refused("ambiguous", roughly, rough.hit_fraction);
+  const double fine_xy = kFineCells * table_.cell;
+  const frsm::Match fine = matcher_.match(*submap, points, rough.pose,
+                                          {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
+  return {from_frsm(fine.pose), fine.covariance + scale_.bend(), fine.hit_fraction,
+          fine.hit_fraction < parameters_.fine_match_hitpct_threshold ? "fine_hits" : ""};
+}
+
+}  // namespace oort

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "oort/map/chains.hpp"
+#include "oort/map/map.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+/// Where a query is looked for in a candidate's submap: around the pose that the graph expects.
+struct SearchWindow {
+  double xy = 0.0;             ///< half width [m]
+  double theta = 0.0;          ///< half width [rad]
+  Eigen::Matrix3d covariance;  ///< of the expected T_candidate_query, along the axes of the candidate
+};
+
+/// How much is matched at once.
+struct LoopScale {
+  std::uint64_t query_nodes = 1;    ///< along the query's chain
+  std::uint64_t submap_nodes = 15;  ///< along the candidate's chain
+  std::size_t rough_points = 100;   ///< that the search over the whole window looks at, evenly chosen
+  std::size_t fine_points = 0;      ///< that the search around its result looks at; 0: all
+  double max_ambiguity = 1.0;       ///< largest score of the best pose elsewhere, as a share of the best; 1: any
+  double sigma_xy = 0.0;            ///< how far the chains are bent over the nodes that are matched [m]
+  double sigma_theta = 0.0;         ///< [rad]
+  double reach = 1e3;               ///< returns farther from their sensor are left out [m]
+
+  /// The covariance of how far the chains are bent, in x, y, theta.
+  Eigen::Matrix3d bend() const { return Eigen::Vector3d(sigma_xy, sigma_xy, sigma_theta).cwiseAbs2().asDiagonal(); }
+};
+
+/// Of submaps in memory at once: enough for the places a robot passes between two visits to one of them.
+constexpr std::size_t kSubmapCacheBytes = std::size_t{128} << 20;
+
+/// Measures where a node stands in the submap of another.
+class LoopMatcher {
+ public:
+  struct Found {
+    Pose2 T_candidate_query;     ///< the best there is, believed or not
+    Eigen::Matrix3d covariance;  ///< along the axes of the candidate
+    double hit_fraction = 0.0;
+    std::string refusal;  ///< why it is not to be believed; empty when it is
+  };
+
+  virtual ~LoopMatcher() = default;
+
+  virtual Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
+                     const SearchWindow& window) = 0;
+
+  /// Draws the next scans of the candidate's submap, so that find() need not draw them all at once. False if there was
+  /// nothing left to draw.
+  virtual bool draw(const Map& map, const Chains& chains, std::uint64_t candidate) = 0;
+};
+
+/// The matcher that loop_closure_graph_builder.scanmatcher names.
+std::unique_ptr<LoopMatcher> make_loop_matcher(const Parameters& parameters, const LoopScale& scale);
+
+}  // namespace oort

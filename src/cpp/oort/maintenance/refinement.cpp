@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/maintenance/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "oort/graph/graph_check.hpp"
+#include "oort/graph/graph_solver.hpp"
+#include "oort/graph/residuals.hpp"
+#include "oort/maintenance/scan_alignment.hpp"
+#include "oort/maintenance/view_pairs.hpp"
+
+namespace oort {
+namespace {
+
+constexpr int kRounds = 4;
+constexpr int kSteps = 2;  // of solving per round: what is linked changes with the next
+constexpr double kTolerance = 1e-3;
+
+// How far apart surfaces may be to be taken for the same, at first and once they were brought together.
+constexpr double kFirstDistance = 0.2;  // [m]
+constexpr double kDistance = 0.1;       // [m]
+
+// Of two scans with less in common, what they say is doubtful.
+constexpr int kLeastPairs = 4;
+constexpr double kLeastShare = 0.15;
+
+// A correction that is larger is not within reach of the surfaces that it was found with.
+constexpr double kMostTurn = 0.1;  // [rad]
+
+// What a closure still counts: it was made from the same scans, less precisely.
+constexpr double kClosureShare = 0.1;
+constexpr double kSwitchedOff = 0.3;
+
+// The squared error at which a link between scans counts half, once all have pulled together.
+constexpr double kDoubt = 4.0;
+
+std::vector<int> variables_of(const Graph& graph) {
+  std::vector<int> variables;
+  int count = 0;
+  for (const bool is_anchor : find_anchors(graph)) variables.push_back(is_anchor ? -1 : count++);
+  return variables;
+}
+
+template <typename AnyEdge>
+Link link_of(const AnyEdge& edge, double weight) {
+  Link link;
+  link.i = edge.i;
+  link.j = edge.j;
+  link.T_i_j = edge.constraint.T_i_j;
+  link.W = std::sqrt(weight) * whitening_matrix(edge.constraint.covariance, Whitening::kCorrect);
+  return link;
+}
+
+/// The chain's links, and the closures that are on.
+std::vector<Link> known_links(const Graph& graph) {
+  std::vector<Link> links;
+  for (const Edge& edge : graph.edges) links.push_back(link_of(edge, 1.0));
+  for (const SwitchableEdge& edge : graph.switchable_edges) {
+    if (edge.switch_value < kSwitchedOff) continue;
+    links.push_back(link_of(edge, kClosureShare * edge.switch_value * edge.switch_value));
+  }
+  return links;
+}
+
+std::string refusal(const ScanAlignment& alignment, double max_distance) {
+  if (alignment.pairs < kLeastPairs || alignment.share < kLeastShare) return "few_surfaces";
+  const bool far =
+      alignment.correction.head<2>().norm() > max_distance || std::abs(alignment.correction.z()) > kMostTurn;
+  return far ? "far" : "";
+}
+
+/// The links between scans at some poses, and how well the scans agree there.
+struct ScanLinks {
+  std::vector<Link> links;
+  ClosureCounts counts;
+  double weight = 0.0;            // of the pieces paired
+  double squared_distance = 0.0;  // [m^2], times weight
+
+  double misfit() const { return weight > 0.0 ? std::sqrt(squared_distance / weight) : 0.0; }
+};
+
+ScanLinks link_scans(const std::vector<std::vector<SurfacePiece>>& pieces, const std::vector<ViewPair>& pairs,
+                     const std::vector<Pose2>& poses, double max_distance, bool judge) {
+  ScanLinks result;
+  for (const auto& [i, j] : pairs) {
+    ++result.counts.tried;
+    const Pose2 T_i_j = between(poses[i], poses[j]);
+    const ScanAlignment alignment = align(pieces[i], pieces[j], T_i_j, max_distance);
+    if (const std::string reason = refusal(alignment, max_distance); !reason.empty()) {
+      ++result.counts.refused[reason];
+      continue;
+    }
+    ++result.counts.accepted;
+    result.weight += alignment.weight;
+    result.squared_distance += alignment.squared_distance;
+    Link link;
+    link.i = i;
+    link.j = j;
+    const Eigen::Vector3d& c = alignment.correction;
+    link.T_i_j = {T_i_j.x + c.x(), T_i_j.y + c.y(), wrap_angle(T_i_j.theta + c.z())};
+    const double chi2 = (alignment.W * c).squaredNorm();
+    link.W = judge ? Eigen::Matrix3d(kDoubt / (kDoubt + chi2) * alignment.W) : alignment.W;
+    result.links.push_back(link);
+  }
+  return result;
+}
+
+std::vector<Pose2> solved(const std::vector<Pose2>& poses, const std::vector<int>& variables, std::vector<Link> links) {
+  const std::size_t count = links.size();
+  GraphSolver solver(poses, variables, std::move(links), kDoubt);
+  solver.use(std::vector<bool>(count, true));
+  for (int k = 0; k < kSteps && solver.step(kTolerance) == GraphSolver::Progress::kMoved; ++k) {
+  }
+  return solver.poses();
+}
+
+}  // namespace
+
+RefinementCounts refine(Map& map) {
+  RefinementCounts counts;
+  std::vector<std::vector<SurfacePiece>> pieces;
+  for (const PointCloud& cloud : map.clouds) pieces.push_back(surface_pieces(cloud));
+  std::vector<Pose2> poses;
+  for (const Node& node : map.graph.nodes) poses.push_back(node.pose);
+  const std::vector<ViewPair> pairs = view_pairs(poses, pieces);
+  const std::vector<int> variables = variables_of(map.graph);
+  const std::vector<Link> known = known_links(map.graph);
+
+  ScanLinks scans = link_scans(pieces, pairs, poses, kFirstDistance, false);
+  const ScanLinks before = link_scans(pieces, pairs, poses, kDistance, false);
+  for (; counts.rounds < kRounds && !scans.links.empty(); ++counts.rounds) {
+    std::vector<Link> links = known;
+    links.insert(links.end(), scans.links.begin(), scans.links.end());
+    poses = solved(poses, variables, std::move(links));
+    scans = link_scans(pieces, pairs, poses, kDistance, true);
+  }
+  counts.links = scans.counts;
+  counts.misfit_before = before.misfit();
+  counts.misfit = scans.misfit();
+  counts.kept = counts.misfit < counts.misfit_before;
+  if (!counts.kept) return counts;
+  double moved = 0.0;
+  for (Node& node : map.graph.nodes) {
+    const Pose2& pose = poses[node.id];
+    moved += (pose.translation() - node.pose.translation()).squaredNorm();
+    if (variables[node.id] >= 0) node.pose = {pose.x, pose.y, wrap_angle(pose.theta)};
+  }
+  counts.moved = std::sqrt(moved / static_cast<double>(poses.size()));
+  return counts;
+}
+
+}  // namespace oort

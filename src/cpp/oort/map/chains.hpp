@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "oort/geometry/pose2.hpp"
+#include "oort/map/map.hpp"
+
+namespace oort {
+
+/// Which nodes were tracked in one go. Within a segment the poses in the scan matcher's own frame are trusted to be
+/// rigid, so submaps are made from them: they do not change when the graph is solved. Nodes that only odometry placed
+/// join no submap. A new segment begins with each session, after each pause, and wherever the link to the node before
+/// is very uncertain.
+class Chains {
+ public:
+  /// Adds the next node: `T_local_sensor` is its pose in the scan matcher's frame of its segment, `matched` whether the
+  /// scan matcher saw it there.
+  void add(bool begins_segment, bool matched, const Pose2& T_local_sensor);
+
+  /// Recovers the segments of a map from its links and incremental results.
+  static Chains of_map(const Map& map);
+
+  std::size_t size() const { return local_poses_.size(); }
+  bool is_matched(std::uint64_t node) const { return matched_[node]; }
+  const Pose2& local_pose(std::uint64_t node) const { return local_poses_[node]; }
+  bool same_segment(std::uint64_t a, std::uint64_t b) const { return first_[a] == first_[b]; }
+  std::uint64_t segment_begin(std::uint64_t node) const { return first_[node]; }
+  std::uint64_t segment_end(std::uint64_t node) const;  ///< one past the last node of the node's segment
+
+  /// The matched ones among up to `size` nodes of the node's segment with the node in their middle, in the order of
+  /// their ids, and the node itself.
+  std::vector<std::uint64_t> neighborhood(std::uint64_t node, std::uint64_t size) const;
+
+ private:
+  std::vector<std::uint64_t> first_;  ///< per node: the first node of its segment
+  std::vector<bool> matched_;
+  std::vector<Pose2> local_poses_;
+};
+
+}  // namespace oort

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/merging/cross_closures.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "oort/graph/optimizer.hpp"
+#include "oort/local_slam/incremental_graph_builder.hpp"
+#include "oort/loop_closure/dock_graph_builder.hpp"
+#include "oort/loop_closure/loop_closure_builder.hpp"
+#include "oort/merging/append_map.hpp"
+
+namespace oort {
+namespace {
+
+// How well a view tells where its map lies on the other: while closures are looked for, the joint is known like this.
+constexpr double kJointSigma = 0.15;       // [m]
+constexpr double kJointSigmaTheta = 0.05;  // [rad]
+
+// Afterwards it is as wide as the first link of a session: closures alone say where the chains lie. FRSM's variance of
+// a scan that nothing was matched with, which resume_scanmatch_cov_scale scales, as in
+// mapper/mapper.cpp.
+constexpr double kUnmatchedVariance = 0.1;
+
+// What does not surprise waits until so many closures were added as are a twentieth of the nodes.
+constexpr std::size_t kLeastWait = 10;
+constexpr std::size_t kWaitShare = 20;
+constexpr int kIterations = 15;
+
+Edge joint_edge(const Map& map, const Joint& joint) {
+  const Pose2 T_before_after = between(map.graph.nodes[joint.before].pose, map.graph.nodes[joint.after].pose);
+  const Eigen::Vector3d sigma(kJointSigma, kJointSigma, kJointSigmaTheta);
+  return {next_edge_id(map.graph),
+          joint.before,
+          joint.after,
+          {map.clouds[joint.after].time, joint.after, T_before_after, sigma.cwiseAbs2().asDiagonal(),
+           ConstraintType::kOdometry}};
+}
+
+/// From the joint to the last node, then from before the joint to the first.
+std::vector<std::uint64_t> outwards(std::uint64_t begin, std::uint64_t joint, std::uint64_t end) {
+  std::vector<std::uint64_t> nodes;
+  for (std::uint64_t node = joint; node < end; ++node) nodes.push_back(node);
+  for (std::uint64_t node = joint; node > begin; --node) nodes.push_back(node - 1);
+  return nodes;
+}
+
+}  // namespace
+
+ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, const Parameters& parameters) {
+  make_dock_closures_firm(map, parameters.dock_graph_builder.closure_firmness);
+  const Chains chains = Chains::of_map(map);
+  LoopClosureBuilder loops(parameters);
+  ClosureCounts counts;
+  ClosureLog log;
+  const std::size_t link = map.graph.edges.size();
+  map.graph.edges.push_back(joint_edge(map, joint));
+  std::uint64_t next_id = next_edge_id(map.graph);
+  const std::size_t patience = std::max(kLeastWait, map.graph.nodes.size() / kWaitShare);
+  std::size_t waiting = 0;
+  for (const std::uint64_t node : outwards(begin, joint.after, map.graph.nodes.size())) {
+    loops.look_before(map, chains, node, begin);
+    double surprise = 0.0;
+    for (const Closure& closure : loops.work_off(map, chains, counts, log)) {
+      surprise = std::max(surprise, add_closure(closure, next_id++, map));
+      ++waiting;
+    }
+    if (surprise > kSurprise || waiting >= patience) {
+      OptimizerOptions options = optimizer_options(parameters, kIterations);
+      if (waiting < patience) options.first_free_node = begin;  // what surprises is where the new nodes lie
+      optimize(map.graph, options);
+      if (waiting >= patience) waiting = 0;
+    }
+  }
+  const double scale = link_parameters(parameters.incremental_graph_builder).resume_scanmatch_cov_scale;
+  map.graph.edges[link].constraint.covariance = kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
+  return counts;
+}
+
+}  // namespace oort

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+// How well the place is known (docs/tracking.md), and what is done when odometry and scans contradict each other.
+#include <gtest/gtest.h>
+
+#include "mapping_fixtures.hpp"
+#include "oort/local_slam/tracking_state.hpp"
+
+namespace oort {
+namespace {
+
+using testing::kMount;
+using State = TrackingState;
+
+Graph closed(std::uint64_t i, std::uint64_t j, double switch_value) {
+  Graph graph;
+  graph.switchable_edges.push_back({0, i, j, {}, switch_value});
+  return graph;
+}
+
+TEST(TrackingMonitorTest, MissedScansAreUncertainAndManyAreLost) {
+  TrackingMonitor monitor;
+  EXPECT_EQ(monitor.update(false), State::kTracking);
+  for (int k = 0; k < 19; ++k) EXPECT_EQ(monitor.update(true), State::kUncertain);
+  EXPECT_EQ(monitor.update(true), State::kLost);
+  EXPECT_EQ(monitor.update(false), State::kTracking);
+  EXPECT_EQ(monitor.update(true), State::kUncertain);
+}
+
+TEST(TrackingMonitorTest, ALooseChainIsUncertainUntilAClosureThatIsOnTiesIt) {
+  TrackingMonitor monitor;
+  monitor.hang_loosely(10, false);
+  EXPECT_EQ(monitor.update(false), State::kUncertain);
+  for (const Graph& graph : {closed(12, 10, 1.0), closed(8, 3, 1.0), closed(12, 3, 0.4)}) {
+    monitor.look_for_tie(graph, 10);  // within itself; elsewhere; switched off
+    EXPECT_EQ(monitor.update(false), State::kUncertain);
+  }
+  monitor.look_for_tie(closed(12, 3, 0.9), 10);
+  EXPECT_EQ(monitor.update(false), State::kTracking);
+}
+
+TEST(TrackingMonitorTest, AChainLooseOnALooseChainMustBeTiedToWhatWasBeforeBoth) {
+  TrackingMonitor monitor;
+  monitor.hang_loosely(10, true);
+  monitor.hang_loosely(20, false);
+  EXPECT_EQ(monitor.update(false), State::kLost);  // a guess upon a guess
+  monitor.look_for_tie(closed(25, 12, 1.0), 20);
+  EXPECT_EQ(monitor.update(false), State::kLost);
+  monitor.look_for_tie(closed(3, 25, 1.0), 20);
+  EXPECT_EQ(monitor.update(false), State::kTracking);
+}
+
+/// Laps through the room, by odometry that fails from one scan on.
+class FaultTest : public ::testing::Test {
+ protected:
+  FaultTest() : odometry(truth) {}
+
+  /// The states told after each scan.
+  std::vector<State> drive() {
+    std::vector<State> states;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const LaserScan scan = see(world, truth[k] * kMount, 0.1 * static_cast<double>(k));
+      const ScanResult result = mapper.add_scan(scan, odometry[k]);
+      states.push_back(result.tracking);
+      told.push_back(mapper.sensor_pose());
+    }
+    mapper.finish();
+    return states;
+  }
+
+  /// How far off the pose that was told after a scan is, seen from the first.
+  double error_at(std::size_t k) const {
+    const Pose2 expected = between(truth.front() * kMount, truth[k] * kMount);
+    return between(expected, between(told.front(), told[k])).translation().norm();
+  }
+  double error_at_end() const { return error_at(truth.size() - 1); }
+
+  const testing::World world = testing::make_room();
+  std::vector<Pose2> truth = testing::laps(1.6);
+  std::vector<Pose2> odometry;
+  std::vector<Pose2> told;
+  Mapper mapper{Parameters(), kMount};
+};
+
+TEST_F(FaultTest, AGoodDriveIsTrackedFromItsFirstScan) {
+  const std::vector<State> states = drive();
+  EXPECT_EQ(std::count(states.begin(), states.end(), State::kTracking), static_cast<long>(states.size()));
+  EXPECT_EQ(mapper.statistics().contradictions, 0u);
+  EXPECT_EQ(mapper.statistics().tracking.tracking, states.size());
+  EXPECT_EQ(mapper.statistics().tracking.changes, 0u);
+}
+
+TEST_F(FaultTest, OdometryThatJumpsIsOverruledAndAClosureTellsThatItWasRight) {
+  constexpr std::size_t kJump = 250;
+  for (std::size_t k = kJump; k < odometry.size(); ++k) odometry[k] = Pose2{0.5, -0.4, 0.3} * odometry[k];
+  const std::vector<State> states = drive();
+  EXPECT_LT(error_at_end(), 0.1);
+  EXPECT_EQ(states.back(), State::kTracking);
+  EXPECT_EQ(std::count(states.begin(), states.begin() + kJump, State::kTracking), static_cast<long>(kJump));
+}
+
+/// Its wheels stand still for two seconds while somebody carries it on along its way.
+TEST_F(FaultTest, ARobotThatIsCarriedWhileItLooksIsFollowed) {
+  constexpr std::size_t kLifted = 250, kPutDown = 270;
+  for (std::size_t k = kLifted; k < truth.size(); ++k) {
+    odometry[k] = k < kPutDown ? odometry[k - 1] : odometry[k - 1] * between(truth[k - 1], truth[k]);
+  }
+  const std::vector<State> states = drive();
+  EXPECT_LT(error_at_end(), 0.1);
+  EXPECT_EQ(states.back(), State::kTracking);
+  EXPECT_GE(mapper.statistics().contradictions, 1u);
+  EXPECT_GT(mapper.statistics().tracking.uncertain, 0u);
+}
+
+/// It sees nothing of how it comes to a place three metres farther on.
+TEST_F(FaultTest, ARobotThatIsPutDownElsewhereIsNotToldToBeTrackedForLong) {
+  constexpr std::size_t kLifted = 250, kPutDown = 330;
+  truth.erase(truth.begin() + kLifted, truth.begin() + kPutDown);
+  odometry.assign(truth.begin(), truth.begin() + kLifted);
+  while (odometry.size() < truth.size()) {
+    const std::size_t k = odometry.size();
+    odometry.push_back(k == kLifted ? odometry.back() : odometry.back() * between(truth[k - 1], truth[k]));
+  }
+  const std::vector<State> states = drive();
+  std::size_t told_wrongly = 0;
+  for (std::size_t k = kLifted; k < truth.size(); ++k) {
+    told_wrongly += error_at(k) > 0.3 && states[k] == State::kTracking ? 1 : 0;
+  }
+  EXPECT_LE(told_wrongly, 10u);  // a second
+  EXPECT_GE(mapper.statistics().tracking.changes, 1u);
+}
+
+TEST_F(FaultTest, TheLinkOfAContradictionIsWideAndBeginsASegmentWhereverItIsRead) {
+  constexpr std::size_t kSlip = 250;  // the wheels turn, the robot does not move by as much
+  for (std::size_t k = kSlip; k < odometry.size(); ++k) odometry[k] = Pose2{0.5, 0.0, 0.0} * odometry[k];
+  drive();
+  ASSERT_GE(mapper.statistics().contradictions, 1u);
+  const Map& map = mapper.map();
+  const Chains chains = Chains::of_map(map);
+  const auto is_wide = [](const Edge& edge) { return edge.constraint.covariance(0, 0) > 0.25; };
+  ASSERT_EQ(std::count_if(map.graph.edges.begin(), map.graph.edges.end(), is_wide),
+            static_cast<long>(mapper.statistics().contradictions));
+  const auto wide = std::find_if(map.graph.edges.begin(), map.graph.edges.end(), is_wide);
+  EXPECT_EQ(wide->i + 1, wide->j);
+  EXPECT_EQ(chains.segment_begin(wide->j), wide->j);
+  EXPECT_FALSE(chains.same_segment(wide->i, wide->j));
+}
+
+}  // namespace
+}  // namespace oort
