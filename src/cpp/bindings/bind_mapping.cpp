@@ -74,6 +74,7 @@ py::dict dict_of(const WorkSeconds& seconds) {
   dict["candidates"] = seconds.candidates;
   dict["matching"] = seconds.matching;
   dict["solving"] = seconds.solving;
+  dict["waiting"] = seconds.waiting;
   return dict;
 }
 
@@ -87,20 +88,20 @@ py::list list_of(const ClosureLog& log) {
 
 py::dict dict_of(const MapperStatistics& statistics) {
   py::dict dict;
-  dict["scans"] = statistics.scans;
-  dict["scans_too_small"] = statistics.scans_too_small;
-  dict["scans_matched"] = statistics.scans_matched;
-  dict["nodes"] = statistics.nodes;
-  dict["odometry_links"] = statistics.odometry_links;
-  dict["match_refusals"] = py::cast(statistics.match_refusals);
-  dict["contradictions"] = statistics.contradictions;
+  dict["scans"] = statistics.local.scans;
+  dict["scans_too_small"] = statistics.local.scans_too_small;
+  dict["scans_matched"] = statistics.chain.scans_matched;
+  dict["nodes"] = statistics.chain.nodes;
+  dict["odometry_links"] = statistics.chain.odometry_links;
+  dict["match_refusals"] = py::cast(statistics.chain.match_refusals);
+  dict["contradictions"] = statistics.chain.contradictions;
   dict["tracking"] = dict_of(statistics.tracking);
-  dict["loops"] = dict_of(statistics.loops);
-  dict["docks"] = dict_of(statistics.docks);
-  dict["solved"] = dict_of(statistics.solved);
-  dict["solves"] = statistics.solves;
-  dict["solves_cut_short"] = statistics.solves_cut_short;
-  dict["refinement"] = dict_of(statistics.refinement);
+  dict["loops"] = dict_of(statistics.global.loops);
+  dict["docks"] = dict_of(statistics.global.docks);
+  dict["solved"] = dict_of(statistics.global.solved);
+  dict["solves"] = statistics.global.solves;
+  dict["solves_cut_short"] = statistics.global.solves_cut_short;
+  dict["refinement"] = dict_of(statistics.global.refinement);
   return dict;
 }
 
@@ -132,8 +133,15 @@ void bind_scan_result(py::module_& m) {
       .def_property_readonly(
           "tracking", [](const ScanResult& r) { return name_of(r.tracking); },
           "How well the sensor's place is known: \"tracking\", \"uncertain\" or \"lost\".")
-      .def_readonly("tried_closures", &ScanResult::tried_closures, "Whether the scan brought work on loop closures.")
-      .def_readonly("solved", &ScanResult::solved, "Whether the graph was solved.");
+      .def_property_readonly(
+          "T_map_base", [](const ScanResult& r) { return tuple_of(r.T_map_base); },
+          "The base's pose (x, y, theta) in the map when the scan came.")
+      .def_property_readonly(
+          "T_map_odom", [](const ScanResult& r) { return tuple_of(r.T_map_odom); },
+          "Where odometry's frame was in the map when the scan came.")
+      .def_readonly("covariance", &ScanResult::covariance,
+                    "Of the pose as matched (x, y, theta, along the axes of the map), 3x3; zero if it was not matched.")
+      .def_readonly("corrected", &ScanResult::corrected, "Whether closures or a solution took effect with the scan.");
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ class FaultTest : public ::testing::Test {
 TEST_F(FaultTest, AGoodDriveIsTrackedFromItsFirstScan) {
   const std::vector<State> states = drive();
   EXPECT_EQ(std::count(states.begin(), states.end(), State::kTracking), static_cast<long>(states.size()));
-  EXPECT_EQ(mapper.statistics().contradictions, 0u);
+  EXPECT_EQ(mapper.statistics().chain.contradictions, 0u);
   EXPECT_EQ(mapper.statistics().tracking.tracking, states.size());
   EXPECT_EQ(mapper.statistics().tracking.changes, 0u);
 }
@@ -108,7 +108,7 @@ TEST_F(FaultTest, ARobotThatIsCarriedWhileItLooksIsFollowed) {
   const std::vector<State> states = drive();
   EXPECT_LT(error_at_end(), 0.1);
   EXPECT_EQ(states.back(), State::kTracking);
-  EXPECT_GE(mapper.statistics().contradictions, 1u);
+  EXPECT_GE(mapper.statistics().chain.contradictions, 1u);
   EXPECT_GT(mapper.statistics().tracking.uncertain, 0u);
 }
 
@@ -134,12 +134,12 @@ TEST_F(FaultTest, TheLinkOfAContradictionIsWideAndBeginsASegmentWhereverItIsRead
   constexpr std::size_t kSlip = 250;  // the wheels turn, the robot does not move by as much
   for (std::size_t k = kSlip; k < odometry.size(); ++k) odometry[k] = Pose2{0.5, 0.0, 0.0} * odometry[k];
   drive();
-  ASSERT_GE(mapper.statistics().contradictions, 1u);
+  ASSERT_GE(mapper.statistics().chain.contradictions, 1u);
   const Map& map = mapper.map();
   const Chains chains = Chains::of_map(map);
   const auto is_wide = [](const Edge& edge) { return edge.constraint.covariance(0, 0) > 0.25; };
   ASSERT_EQ(std::count_if(map.graph.edges.begin(), map.graph.edges.end(), is_wide),
-            static_cast<long>(mapper.statistics().contradictions));
+            static_cast<long>(mapper.statistics().chain.contradictions));
   const auto wide = std::find_if(map.graph.edges.begin(), map.graph.edges.end(), is_wide);
   EXPECT_EQ(wide->i + 1, wide->j);
   EXPECT_EQ(chains.segment_begin(wide->j), wide->j);

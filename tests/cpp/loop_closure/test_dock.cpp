@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "cloud_edits.hpp"
 #include "mapping_fixtures.hpp"
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/storage/map_file.hpp"
@@ -185,10 +186,12 @@ TEST_F(DockTest, ThatOneNodeIsAllThereIsMakesItNoBetter) {
   ASSERT_TRUE(whole);
   chains = {};  // the last node stands alone: what is before it is of another session
   for (const Node& node : map.graph.nodes) chains.add(node.id == 0 || node.id == query, true, node.pose);
+  PointCloud seen = map.clouds[query];
   for (std::size_t k = 0; k < 60; ++k) {  // a third of what it sees has changed
-    map.clouds[query].points[k].x *= 0.6;
-    map.clouds[query].points[k].y *= 0.6;
+    seen.points[k].x *= 0.6;
+    seen.points[k].y *= 0.6;
   }
+  map.clouds.set(query, seen);
   EXPECT_TRUE(find());  // as documented
   p.dock_match_least_size = 1;
   EXPECT_EQ(verdict(), "hits");
@@ -200,7 +203,7 @@ TEST_F(DockTest, OnlyWhatWasMatchedIsFirm) {
   p.closure_firmness = 70.0;
   EXPECT_EQ(find()->firmness, 70.0);
   EXPECT_GT((find()->covariance - documented).determinant(), 0.0);
-  map.clouds[query].points.resize(3);
+  testing::edit_cloud(map.clouds, query, [](PointCloud& cloud) { cloud.points.resize(3); });
   p.dock_match_submap_size = 1;
   EXPECT_EQ(find()->firmness, 1.0);
 }
@@ -220,15 +223,14 @@ TEST_F(DockTest, ALoadedMapsDockClosuresAreKnownByTheirDirection) {
 }
 
 TEST_F(DockTest, SomewhereElseIsNotTheDock) {
-  map.clouds[query].points.clear();
   const Pose2 elsewhere = dock() * Pose2{1.5, 0.8, 1.5};
-  map.clouds[query] = to_point_cloud(testing::see(testing::make_room(), elsewhere, 9.0));
+  map.clouds.set(query, to_point_cloud(testing::see(testing::make_room(), elsewhere, 9.0)));
   p.dock_match_submap_size = 1;  // only what is seen now
   EXPECT_FALSE(find());
 }
 
 TEST_F(DockTest, WhereNothingIsSeenTheContactsCount) {
-  map.clouds[query].points.resize(3);
+  testing::edit_cloud(map.clouds, query, [](PointCloud& cloud) { cloud.points.resize(3); });
   p.dock_match_submap_size = 1;
   const std::optional<Closure> closure = find();
   ASSERT_TRUE(closure);

@@ -221,7 +221,7 @@ TEST_F(ClosureTest, WhatLiesBeyondTheWindowIsNotBelieved) {
 }
 
 TEST_F(ClosureTest, AScanThatSeesNothingClosesNoLoop) {
-  map.clouds[kQuery].points.clear();
+  map.clouds.set(kQuery, PointCloud{kQuery, 0.0, {}});
   EXPECT_FALSE(find());
 }
 

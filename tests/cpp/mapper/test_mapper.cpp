@@ -74,8 +74,8 @@ TEST_F(MapperTest, ExactOdometryGivesTheTruth) {
     const Errors errors = node_errors(mapper.map(), truth);
     EXPECT_LT(errors.position, 0.03);
     EXPECT_LT(errors.heading, 0.015);
-    EXPECT_EQ(mapper.statistics().odometry_links, 0u);
-    EXPECT_GT(mapper.statistics().loops.accepted, 0u);
+    EXPECT_EQ(mapper.statistics().chain.odometry_links, 0u);
+    EXPECT_GT(mapper.statistics().global.loops.accepted, 0u);
   }
 }
 
@@ -182,10 +182,10 @@ TEST_F(MapperTest, MapIsWellFormed) {
     EXPECT_EQ(map.loop_results[k].target, edge.j);
   }
   const MapperStatistics& statistics = mapper.statistics();
-  EXPECT_EQ(statistics.nodes, nodes);
-  EXPECT_EQ(statistics.scans, truth.size());
-  EXPECT_EQ(statistics.scans_too_small, 0u);
-  EXPECT_EQ(statistics.loops.accepted, map.graph.switchable_edges.size());
+  EXPECT_EQ(statistics.chain.nodes, nodes);
+  EXPECT_EQ(statistics.local.scans, truth.size());
+  EXPECT_EQ(statistics.local.scans_too_small, 0u);
+  EXPECT_EQ(statistics.global.loops.accepted, map.graph.switchable_edges.size());
 }
 
 TEST_F(MapperTest, ParkedRobotAddsNothing) {
@@ -193,13 +193,13 @@ TEST_F(MapperTest, ParkedRobotAddsNothing) {
   const std::vector<Pose2> some(truth.begin(), truth.begin() + 50);
   drive(mapper, world, some, some);
   const std::size_t nodes = mapper.map().graph.nodes.size();
-  const std::uint64_t solves = mapper.statistics().solves;
+  const std::uint64_t solves = mapper.statistics().global.solves;
   for (int k = 0; k < 500; ++k) {
     EXPECT_EQ(mapper.add_scan(see(world, some.back() * kMount, 200.0 + 0.1 * k), some.back()).outcome,
               ScanOutcome::kCarried);
   }
   EXPECT_EQ(mapper.map().graph.nodes.size(), nodes);
-  EXPECT_EQ(mapper.statistics().solves, solves);
+  EXPECT_EQ(mapper.statistics().global.solves, solves);
 }
 
 TEST_F(MapperTest, ScansWithFewReturnsMakeNoNode) {
@@ -217,7 +217,7 @@ TEST_F(MapperTest, ScansWithFewReturnsMakeNoNode) {
   EXPECT_EQ(far.node_id, 0u);
   EXPECT_DOUBLE_EQ(far.T_node_sensor.x, 1.0);
   EXPECT_EQ(mapper.map().graph.nodes.size(), 1u);
-  EXPECT_EQ(mapper.statistics().scans_too_small, 2u);
+  EXPECT_EQ(mapper.statistics().local.scans_too_small, 2u);
 }
 
 TEST_F(MapperTest, RefusesWhatIsNotFiniteAndStaysAsItWas) {
@@ -225,7 +225,7 @@ TEST_F(MapperTest, RefusesWhatIsNotFiniteAndStaysAsItWas) {
   const std::vector<Pose2> some(truth.begin(), truth.begin() + 30);
   drive(mapper, world, some, some);
   const Map before = mapper.map();
-  const std::uint64_t scans = mapper.statistics().scans;
+  const std::uint64_t scans = mapper.statistics().local.scans;
   const LaserScan good = see(world, some.back() * kMount, 200.0);
   EXPECT_THROW(mapper.add_scan(good, {NAN, 0.0, 0.0}), InputError);
   EXPECT_THROW(mapper.add_scan(good, {0.0, 0.0, INFINITY}), InputError);
@@ -237,7 +237,7 @@ TEST_F(MapperTest, RefusesWhatIsNotFiniteAndStaysAsItWas) {
   EXPECT_THROW(mapper.add_scan(bad, some.back()), InputError);
   EXPECT_THROW(mapper.begin_session({0.0, NAN, 0.0}), InputError);
   EXPECT_THROW(Mapper(Parameters(), {NAN, 0.0, 0.0}), InputError);
-  EXPECT_EQ(mapper.statistics().scans, scans);
+  EXPECT_EQ(mapper.statistics().local.scans, scans);
   expect_same(mapper.map(), before);
 }
 
@@ -256,13 +256,13 @@ TEST_F(MapperTest, MatchAgainstTheOdometryBecomesAnOdometryLink) {
   drive(mapper, world, truth, odometry);
   const Map& map = mapper.map();
   const MapperStatistics& statistics = mapper.statistics();
-  EXPECT_GE(statistics.odometry_links, 1u);
+  EXPECT_GE(statistics.chain.odometry_links, 1u);
   std::uint64_t refusals = 0;
-  for (const auto& [reason, count] : statistics.match_refusals) {
+  for (const auto& [reason, count] : statistics.chain.match_refusals) {
     EXPECT_NE(reason, "");
     refusals += count;
   }
-  EXPECT_EQ(refusals, statistics.odometry_links);
+  EXPECT_EQ(refusals, statistics.chain.odometry_links);
   const auto jump = std::find_if(map.graph.edges.begin(), map.graph.edges.end(),
                                  [](const Edge& e) { return e.constraint.type == ConstraintType::kOdometry; });
   ASSERT_NE(jump, map.graph.edges.end());

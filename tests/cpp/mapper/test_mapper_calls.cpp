@@ -51,8 +51,8 @@ TEST_F(MapperCallsTest, NotifyDockedMakesANodeAndOneSwitchableEdge) {
   EXPECT_EQ(map().loop_results.back().target, edge.j);
   const Pose2 expected = between(truth[0] * kMount, truth.back() * kMount);
   EXPECT_LT(between(expected, edge.constraint.T_i_j).translation().norm(), 0.02);
-  EXPECT_EQ(mapper.statistics().docks.tried, 1u);
-  EXPECT_EQ(mapper.statistics().docks.accepted, 1u);
+  EXPECT_EQ(mapper.statistics().global.docks.tried, 1u);
+  EXPECT_EQ(mapper.statistics().global.docks.accepted, 1u);
 }
 
 TEST_F(MapperCallsTest, NotifyDockedTwiceMakesOneNode) {
@@ -61,7 +61,7 @@ TEST_F(MapperCallsTest, NotifyDockedTwiceMakesOneNode) {
   const std::size_t nodes = map().graph.nodes.size();
   mapper.notify_docked();
   EXPECT_EQ(map().graph.nodes.size(), nodes);
-  EXPECT_EQ(mapper.statistics().docks.tried, 2u);
+  EXPECT_EQ(mapper.statistics().global.docks.tried, 2u);
 }
 
 TEST_F(MapperCallsTest, NotifyDockedSomewhereElseChangesNoPose) {
@@ -72,8 +72,8 @@ TEST_F(MapperCallsTest, NotifyDockedSomewhereElseChangesNoPose) {
   EXPECT_FALSE(mapper.notify_docked());
   EXPECT_EQ(map().graph.switchable_edges.size(), closures);
   EXPECT_LT(between(before, mapper.sensor_pose()).translation().norm(), 1e-9);
-  EXPECT_EQ(mapper.statistics().docks.accepted, 0u);
-  EXPECT_EQ(mapper.statistics().docks.refused.size(), 1u);
+  EXPECT_EQ(mapper.statistics().global.docks.accepted, 0u);
+  EXPECT_EQ(mapper.statistics().global.docks.refused.size(), 1u);
 }
 
 TEST_F(MapperCallsTest, ADockClosureThatAllElseContradictsGoesOff) {
@@ -144,7 +144,7 @@ TEST_F(MapperCallsTest, RobotThatWasCarriedWhilePausedIsFoundAgain) {
   for (const Pose2& pose : again) odometry.push_back(inverse(T_true_odom) * pose);
   drive(mapper, world, again, odometry, 300.0);
   mapper.finish();
-  EXPECT_GT(mapper.statistics().loops.accepted, 0u);
+  EXPECT_GT(mapper.statistics().global.loops.accepted, 0u);
   const Pose2 expected = between(truth[0] * kMount, again.back() * kMount);
   EXPECT_LT(between(expected, mapper.sensor_pose()).translation().norm(), 0.05);
   EXPECT_GT(map().graph.nodes.size(), nodes + 10);

@@ -138,7 +138,7 @@ TEST(Mapper, CompensatesTheMotionWithinAScan) {
 TEST(Mapper, RefusesAMotionThatIsNotFinite) {
   Mapper mapper(Parameters(), kMount);
   EXPECT_THROW(mapper.add_scan(see(make_room(), kMount, 0.0), {}, {{}, {0.0, kNan, 0.0}}), InputError);
-  EXPECT_EQ(mapper.statistics().scans, 0U);
+  EXPECT_EQ(mapper.statistics().local.scans, 0U);
 }
 
 TEST(Mapper, AParkedRobotAddsNodesByTimeIfAsked) {

@@ -82,12 +82,15 @@ TEST(CommonScans, AreThoseOfTheSameTimeAndPoints) {
   const Map map = small_map();
   EXPECT_EQ(count_common_scans(map, map), 5u);  // bearings of what is no return are nan, and still the same
   Map other = map;
-  other.clouds[0].time += 0.5;
-  other.clouds[1].points[7].x += 0.01;
-  other.clouds[2].points.pop_back();
+  std::vector<PointCloud> changed(map.clouds.begin(), map.clouds.end());
+  changed[0].time += 0.5;
+  changed[1].points[7].x += 0.01;
+  changed[2].points.pop_back();
+  other.clouds = changed;
   EXPECT_EQ(count_common_scans(map, other), 2u);
   EXPECT_EQ(count_common_scans(map, Map{}), 0u);
-  for (PointCloud& cloud : other.clouds) cloud.points.clear();
+  for (PointCloud& cloud : changed) cloud.points.clear();
+  other.clouds = changed;
   EXPECT_EQ(count_common_scans(other, other), 0u) << "what saw nothing is alike on any drive";
 }
 

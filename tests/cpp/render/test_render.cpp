@@ -67,7 +67,7 @@ TEST(Render, AnEmptyMapGivesEmptyGrids) {
 }
 
 TEST(Render, ANodeThatSawNothingIsAFootprint) {
-  const RenderedMap rendered = render({{0, {1.0, 2.0, 0.5}}}, {{0, 0.0, {}}}, documented());
+  const RenderedMap rendered = render({{0, {1.0, 2.0, 0.5}}}, PointClouds({{0, 0.0, {}}}), documented());
   EXPECT_GT(count(rendered.map, kFree), 20);
   EXPECT_EQ(count(rendered.map, kOccupied), 0);
 }
@@ -109,12 +109,12 @@ TEST(Render, ClearsADiscAroundEachNode) {
   OutputMapParameters parameters = documented();
   parameters.probability_grid.insert_free_space = false;
   const Node node{0, {0.03, 0.0, 0.0}};
-  const OccupancyGrid map = render({node}, {{0, 0.0, corners}}, parameters).map;
+  const OccupancyGrid map = render({node}, PointClouds({{0, 0.0, corners}}), parameters).map;
   EXPECT_EQ(count(map, kFree), 29);  // the lattice points with dx^2 + dy^2 <= 9
   EXPECT_EQ(cell_at(map, 0.225, 0.025), kFree);
   EXPECT_EQ(cell_at(map, -0.125, 0.025), kUnknown);
   parameters.robot_radius = 0.0;
-  EXPECT_EQ(count(render({node}, {{0, 0.0, corners}}, parameters).map, kFree), 1);
+  EXPECT_EQ(count(render({node}, PointClouds({{0, 0.0, corners}}), parameters).map, kFree), 1);
 }
 
 TEST(Render, IsTheSameEachTime) {
@@ -172,7 +172,7 @@ TEST(Render, RefusesParametersThatMakeNoSense) {
   const auto refuses = [](auto&& change) {
     OutputMapParameters parameters = documented();
     change(parameters);
-    EXPECT_THROW(render({{0, {}}}, {{0, 0.0, {}}}, parameters), ParameterError);
+    EXPECT_THROW(render({{0, {}}}, PointClouds({{0, 0.0, {}}}), parameters), ParameterError);
   };
   refuses([](auto& p) { p.probability_grid.resolution = 0.0; });
   refuses([](auto& p) { p.probability_grid.hit_probability = 1.5; });

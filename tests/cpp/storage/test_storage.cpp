@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "cloud_edits.hpp"
 #include "oort/geometry/errors.hpp"
 #include "oort/storage/codec.hpp"
 #include "oort/storage/file_set.hpp"
@@ -73,7 +74,7 @@ TEST_F(Storage, DoesNotSaveADefectiveMap) {
 
 TEST_F(Storage, DoesNotLoadADefectiveMap) {
   Map broken = make_map();
-  broken.clouds.pop_back();
+  testing::drop_last(broken.clouds);
   FileSet(base_).write(encode_map(broken), encode_metadata({}));
   EXPECT_NE(load_error(base_).find("4 nodes but 3 clouds"), std::string::npos) << load_error(base_);
 }
@@ -311,7 +312,7 @@ TEST_F(Storage, TheGenuineMapComesBackByteForByte) {
   EXPECT_EQ(map.graph.nodes.size(), 9U);
   EXPECT_EQ(map.graph.edges.size(), 8U);
   EXPECT_EQ(map.graph.switchable_edges.size(), 1U);
-  EXPECT_EQ(map.clouds.at(8).points.size(), 180U);
+  EXPECT_EQ(map.clouds[8].points.size(), 180U);
   EXPECT_EQ(map.locations.at(0).name_space, "dock");
   SaveOptions as_original;
   as_original.as_original = true;

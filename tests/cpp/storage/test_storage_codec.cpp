@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "cloud_edits.hpp"
 #include "oort/geometry/errors.hpp"
 #include "oort/map/map_check.hpp"
 #include "oort/storage/checksum_file.hpp"
@@ -145,7 +146,7 @@ TEST(Codec, ReadsLargeMaps) {
     map.graph.nodes.push_back({k, {}});
     map.clouds.push_back({k, 0.0, std::vector<Point2>(2000, {1.25, 2.5, 1.0})});  // 77 MB unpacked
   }
-  EXPECT_EQ(decode_map(encode_map(map), "").clouds.at(399).points.size(), 2000U);
+  EXPECT_EQ(decode_map(encode_map(map), "").clouds[399].points.size(), 2000U);
 }
 
 TEST(Codec, SaysWhichFileIsTruncated) {
@@ -251,7 +252,7 @@ Words overlapping_clouds(std::uint64_t clouds, std::uint64_t points) {
 }
 
 TEST(Codec, RefusesPartsThatOverlap) {
-  EXPECT_EQ(decode_map(pack(overlapping_clouds(1, 10)), "").clouds.at(0).points.size(), 10U) << "the builder works";
+  EXPECT_EQ(decode_map(pack(overlapping_clouds(1, 10)), "").clouds[0].points.size(), 10U) << "the builder works";
   EXPECT_NE(decode_error(pack(overlapping_clouds(1000, 10000))).find("damaged"), std::string::npos);
 }
 
@@ -282,11 +283,13 @@ TEST(Defect, FindsWhatMakesAMapUnusable) {
   finds("negative variance", [](Map& m) { m.graph.edges[0].constraint.covariance(1, 1) = -1.0; });
   finds("switch of edge 3", [](Map& m) { m.graph.switchable_edges[0].switch_value = 1.5; });
   finds("switch of edge 3", [](Map& m) { m.graph.switchable_edges[0].switch_value = kNan; });
-  finds("4 nodes but 3 clouds", [](Map& m) { m.clouds.pop_back(); });
-  finds("cloud 1 belongs to node 0", [](Map& m) { m.clouds[1].id = 0; });
-  finds("time of cloud 1", [](Map& m) { m.clouds[1].time = kNan; });
-  finds("point of cloud 2", [](Map& m) { m.clouds[2].points[0].x = kNan; });
-  finds("point of cloud 2", [](Map& m) { m.clouds[2].points[1].y = kNan; });
+  finds("4 nodes but 3 clouds", [](Map& m) { testing::drop_last(m.clouds); });
+  finds("cloud 1 belongs to node 0", [](Map& m) { testing::edit_cloud(m.clouds, 1, [](PointCloud& c) { c.id = 0; }); });
+  finds("time of cloud 1", [](Map& m) { testing::edit_cloud(m.clouds, 1, [](PointCloud& c) { c.time = kNan; }); });
+  finds("point of cloud 2",
+        [](Map& m) { testing::edit_cloud(m.clouds, 2, [](PointCloud& c) { c.points[0].x = kNan; }); });
+  finds("point of cloud 2",
+        [](Map& m) { testing::edit_cloud(m.clouds, 2, [](PointCloud& c) { c.points[1].y = kNan; }); });
   finds("incremental result 1 refers", [](Map& m) { m.incremental_results[1].target = 4; });
   finds("pose of incremental result 1", [](Map& m) { m.incremental_results[1].T_local_id.theta = kNan; });
   finds("hit fraction of incremental result 1", [](Map& m) { m.incremental_results[1].hit_fraction = kNan; });

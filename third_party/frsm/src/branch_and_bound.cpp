@@ -19,6 +19,8 @@ struct Node {
   double bound = 0.0;     // of the objective
 };
 
+constexpr std::uint64_t kTellAfter = 1 << 16;
+
 // The distance from a value to an interval.
 double gap(double value, double low, double high) {
   return std::max({0.0, low - value, value - high});
@@ -41,6 +43,10 @@ class BranchAndBound {
     }
   }
 
+  ~BranchAndBound() { tell(); }
+  BranchAndBound(const BranchAndBound&) = delete;
+  BranchAndBound& operator=(const BranchAndBound&) = delete;
+
   std::optional<Candidate> run() {
     visit(make_node(0, 0, 0, 0));  // a good start prunes much
     const int top = static_cast<int>(levels_.size()) - 1;
@@ -56,7 +62,14 @@ class BranchAndBound {
   }
 
  private:
-  Node make_node(int level, int it, int ix, int iy) const {
+  void tell() {
+    if (search_.on_lookups) search_.on_lookups(lookups_);
+    lookups_ = 0;
+  }
+
+  Node make_node(int level, int it, int ix, int iy) {
+    lookups_ += cells_[it + lattice_.nt].size();
+    if (lookups_ >= kTellAfter) tell();
     Node node{level, it, ix, iy, sum_values(levels_[level], cells_[it + lattice_.nt], ix, iy), 0.0};
     const double prior = level == 0 ? search_.objective.prior(lattice_.at(it, ix, iy))
                                     : prior_bound(it, ix, last_x(node), iy, last_y(node));
@@ -115,6 +128,7 @@ class BranchAndBound {
   std::vector<TableView> levels_;
   std::vector<std::vector<Cell>> cells_;  // per heading
   std::optional<Candidate> best_;
+  std::uint64_t lookups_ = 0;  // not told of yet
 };
 
 }  // namespace

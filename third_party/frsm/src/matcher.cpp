@@ -54,7 +54,8 @@ double second_peak(const Search& search, const Candidate& best, const MatcherPar
                lattice,
                Objective(search.objective.weight(), search.body.size(), nullptr),
                Exclusion{best, cells, cells, turns},
-               0.0};
+               0.0,
+               search.on_lookups};
   apart.floor = apart.objective.evidence(params.ambiguity_floor * best.sum);
   const auto second = find_best(apart, params.exhaustive_limit);
   return second ? static_cast<double>(second->sum) / best.sum : 0.0;
@@ -147,7 +148,7 @@ Matcher::Matcher(const MatcherParams& params) : params_(params) {
 }
 
 Match Matcher::match(const Table& table, const Points& body, const Pose& guess, const Window& window,
-                     const Prior* prior) const {
+                     const Prior* prior, const OnLookups& on_lookups) const {
   const double cell = table.params().cell;
   check_input(guess, window, cell, params_.theta_step, prior);
   const Points points = drop_invalid(body);
@@ -164,7 +165,8 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
                       make_lattice(guess, window, cell, params_.theta_step),
                       Objective(weight, points.size(), prior),
                       std::nullopt,
-                      -std::numeric_limits<double>::infinity()};
+                      -std::numeric_limits<double>::infinity(),
+                      on_lookups};
   const Candidate best = *find_best(search, params_.exhaustive_limit);
   if (best.sum == 0) return give_up(Status::kNoOverlap);
 

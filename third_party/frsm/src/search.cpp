@@ -59,6 +59,9 @@ std::optional<Candidate> search_all(const Search& search) {
   for (int it = -lattice.nt; it <= lattice.nt; ++it) {
     to_cells(search.table, search.body, lattice.at(it, 0, 0), &cells);
     slice.score(table, cells);
+    if (search.on_lookups) {
+      search.on_lookups(cells.size() * static_cast<std::size_t>((2 * lattice.nx + 1) * (2 * lattice.ny + 1)));
+    }
     for (int iy = -lattice.ny; iy <= lattice.ny; ++iy) {
       for (int ix = -lattice.nx; ix <= lattice.nx; ++ix) {
         if (search.exclusion && search.exclusion->contains(it, ix, iy)) continue;

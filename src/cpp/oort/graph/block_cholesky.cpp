@@ -83,6 +83,8 @@ void BlockCholesky::find_pattern() {
   for (int row = 0; row < n; ++row) {
     for (int top = reach(row, stack); top < n; ++top) ++count[stack[top]];
   }
+  products_ = 0;
+  for (const std::size_t blocks : count) products_ += blocks * (blocks + 1) / 2;
   L_begin_.assign(1, 0);
   for (const std::size_t blocks : count) L_begin_.push_back(L_begin_.back() + blocks);
   L_end_.resize(size());

@@ -26,6 +26,8 @@ class BlockCholesky {
   std::size_t size() const { return order_.size(); }
   /// Blocks below the diagonal of L.
   std::size_t fill() const { return L_rows_.size(); }
+  /// Products of blocks in one factorisation.
+  std::size_t products() const { return products_; }
 
   /// The matrix to factorise. Adding goes on until set_zero.
   void set_zero();
@@ -66,6 +68,7 @@ class BlockCholesky {
   std::vector<std::size_t> L_begin_, L_end_;
   std::vector<int> L_rows_;
   std::vector<Eigen::Matrix3d> L_, L_diagonal_inverse_;
+  std::size_t products_ = 0;
   // Work space.
   std::vector<int> mark_;
   std::vector<Eigen::Matrix3d> row_;

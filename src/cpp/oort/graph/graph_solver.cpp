@@ -20,6 +20,12 @@ constexpr double kLeastDiagonal = 1e-6;
 // A large graph is done when the promise is small beside its cost, too.
 constexpr double kRelativeTolerance = 1e-7;
 
+// What solving costs in units of work, measured on graphs of 1,000 to 12,000 nodes.
+constexpr double kWorkPerPattern = 0.6;    // for each link and variable, of ordering and finding the pattern
+constexpr double kWorkPerLink = 0.5;       // of linearising and of the cost
+constexpr double kWorkPerBlock = 0.03;     // of the factor, in both substitutions
+constexpr double kWorkPerProduct = 0.015;  // of two blocks, in the factorisation
+
 }  // namespace
 
 GraphSolver::GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<Link> links, double scale)
@@ -43,11 +49,13 @@ bool GraphSolver::use(const std::vector<bool>& on) {
     pair_of_.push_back(pairs.size());
     if (i >= 0 && j >= 0) pairs.push_back({i, j});
   }
+  charge(meter_, kWorkPerPattern * static_cast<double>(pairs.size() + static_cast<std::size_t>(variable_count_)));
   cholesky_.analyze(static_cast<std::size_t>(variable_count_), pairs);
   return true;
 }
 
 GraphSolver::Progress GraphSolver::step(double tolerance) {
+  charge(meter_, kWorkPerLink * static_cast<double>(active_.size()));
   linearize();
   std::vector<double> switches;
   for (const std::size_t k : active_) switches.push_back(links_[k].s);
@@ -55,6 +63,8 @@ GraphSolver::Progress GraphSolver::step(double tolerance) {
   std::vector<Eigen::Vector3d> damping(descent_.size());
   for (; damping_ <= kMostDamping; damping_ = 10.0 * std::max(damping_, kFirstDamping)) {
     for (int k = 0; k < variable_count_; ++k) damping[k] = damping_ * cholesky_.diagonal(k).cwiseMax(kLeastDiagonal);
+    charge(meter_, kWorkPerBlock * static_cast<double>(cholesky_.fill()) +
+                       kWorkPerProduct * static_cast<double>(cholesky_.products()));
     if (!cholesky_.factorize(damping)) continue;
     delta_ = descent_;
     cholesky_.solve(delta_);

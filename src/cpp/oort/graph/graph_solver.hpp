@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/geometry/work_meter.hpp"
 #include "oort/graph/block_cholesky.hpp"
 
 namespace oort {
@@ -46,6 +47,9 @@ class GraphSolver {
 
   /// `variables` has one number per node: which variable its pose is, counting up from 0, or -1 if it is held.
   GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<Link> links, double scale);
+
+  /// Who counts the work of use() and step(); may be null.
+  void set_meter(WorkMeter* meter) { meter_ = meter; }
 
   const std::vector<Pose2>& poses() const { return poses_; }
   const std::vector<Link>& links() const { return links_; }
@@ -97,6 +101,7 @@ class GraphSolver {
   double scale_;
   int variable_count_ = 0;
 
+  WorkMeter* meter_ = nullptr;
   std::vector<bool> on_;
   std::vector<std::size_t> active_;   // links that take part and have an end that is not held
   std::vector<std::size_t> pair_of_;  // for each of them its place among the pairs of cholesky_

@@ -20,6 +20,9 @@ namespace {
 // Squared errors beyond this overflow once products of them are summed.
 constexpr double kLargestSquaredError = 1e100;
 
+// Units of work for each link and iteration of Ceres.
+constexpr double kWorkPerHuberLink = 3.0;
+
 /// The edge as a link. InputError, naming the edge, if its covariance has no inverse or its error is too large to
 /// compute with.
 template <typename AnyEdge>
@@ -102,12 +105,15 @@ void check_options(const OptimizerOptions& options) {
 OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
   if (options.robust_kernel == RobustKernel::kHuber) {
     Landmarks none;
+    charge(options.meter, kWorkPerHuberLink * static_cast<double>(graph.edges.size() + graph.switchable_edges.size()) *
+                              options.max_iterations);
     return optimize_with_landmarks(graph, {}, none, options);
   }
   check_options(options);
   check_graph(graph);
   GraphSolver solver(poses_of(graph), variables_of(graph, options.first_free_node), links_of(graph, options.whitening),
                      options.switchable_constraint_scale);
+  solver.set_meter(options.meter);
   OptimizerSummary summary;
   summary.initial_cost = robust_cost(solver);
   Search search(solver, options.max_iterations);

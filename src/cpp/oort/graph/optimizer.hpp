@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "oort/geometry/work_meter.hpp"
 #include "oort/graph/graph.hpp"
 
 namespace oort {
@@ -34,6 +35,8 @@ struct OptimizerOptions {
   RobustKernel robust_kernel = RobustKernel::kSwitchable;
   /// Standard deviations from which on a link's cost is no longer squared; for kHuber.
   double huber_scale = 10.0;
+  /// Who counts the work while it is done; may be null. With kHuber it is charged beforehand as a whole.
+  WorkMeter* meter = nullptr;
 };
 
 /// Throws ParameterError.

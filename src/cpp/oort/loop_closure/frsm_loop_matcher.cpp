@@ -18,6 +18,12 @@ constexpr double kFineThetaSteps = 4.0;
 // Of a submap, in one piece of work: about as dear as a match.
 constexpr std::size_t kScansDrawnAtOnce = 8;
 
+// Units of work.
+constexpr double kWorkPerPointDrawn = 1.0;
+constexpr double kWorkPerPoint = 0.05;  // of one pass of the polish
+constexpr double kPolishPasses = 20;
+constexpr double kWorkPerLookup = 0.0012;  // of one cell of a table
+
 frsm::Points thinned(const frsm::Points& points, std::size_t count) {
   if (count == 0 || points.size() <= count) return points;
   frsm::Points some;
@@ -51,12 +57,13 @@ bool FrsmLoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) co
          static_cast<std::size_t>(parameters_.submap_min_neighborhood_size);
 }
 
-bool FrsmLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate) {
+bool FrsmLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter) {
+  charge(meter, kWorkPerPointDrawn * static_cast<double>(kScansDrawnAtOnce * map.clouds[candidate].points.size()));
   return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, kScansDrawnAtOnce);
 }
 
 LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
-                                         std::uint64_t candidate, const SearchWindow& window) {
+                                         std::uint64_t candidate, const SearchWindow& window, WorkMeter* meter) {
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const auto refused = [](const std::string& reason, const Pose2& pose, double hits) {
     return Found{pose, Eigen::Matrix3d::Zero(), hits, reason};
@@ -66,9 +73,14 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, s
       thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach),
               scale_.fine_points);
   const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
+  frsm::OnLookups on_lookups;
+  if (meter != nullptr) {
+    charge(meter, kWorkPerPoint * static_cast<double>(points.size()) * kPolishPasses);
+    on_lookups = [meter](std::uint64_t lookups) { charge(meter, kWorkPerLookup * static_cast<double>(lookups)); };
+  }
   const frsm::Prior prior{to_frsm(expected), window.covariance};
   const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,
-                                           {window.xy, window.xy, window.theta}, &prior);
+                                           {window.xy, window.xy, window.theta}, &prior, on_lookups);
   if (rough.hits == 0) return refused("no_overlap", expected, 0.0);
   const Pose2 roughly = from_frsm(rough.pose);
   if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
@@ -76,8 +88,9 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, s
   if (rough.saturated) return refused("window_border", roughly, rough.hit_fraction);
   if (rough.ambiguity > scale_.max_ambiguity) return refused("ambiguous", roughly, rough.hit_fraction);
   const double fine_xy = kFineCells * table_.cell;
-  const frsm::Match fine = matcher_.match(*submap, points, rough.pose,
-                                          {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step}, &prior);
+  const frsm::Match fine =
+      matcher_.match(*submap, points, rough.pose, {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step},
+                     &prior, on_lookups);
   return {from_frsm(fine.pose), fine.covariance + scale_.bend(), fine.hit_fraction,
           fine.hit_fraction < parameters_.fine_match_hitpct_threshold ? "fine_hits" : ""};
 }

@@ -14,8 +14,8 @@ class FrsmLoopMatcher : public LoopMatcher {
   FrsmLoopMatcher(const Parameters& parameters, const LoopScale& scale);
 
   Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
-             const SearchWindow& window) override;
-  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate) override;
+             const SearchWindow& window, WorkMeter* meter = nullptr) override;
+  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter = nullptr) override;
 
  private:
   bool is_small(const Chains& chains, std::uint64_t candidate) const;

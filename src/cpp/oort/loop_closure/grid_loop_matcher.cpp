@@ -16,6 +16,11 @@
 namespace oort {
 namespace {
 
+// Units of work.
+constexpr double kWorkPerPointDrawn = 2.0;
+constexpr double kWorkPerMatch = 5000.0;       // of the refinement by Ceres
+constexpr double kWorkPerPointAndTurn = 50.0;  // of the search, for each radian of the window
+
 /// Bounds are those of a whole grid: one that grows is drawn anew.
 SubmapCache<BoundGrids> grid_cache(const BranchAndBoundMatcherParameters& p, const LoopScale& scale) {
   const ProbabilityGridParameters grid = p.probability_grid;
@@ -67,12 +72,13 @@ bool GridLoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) co
          static_cast<std::size_t>(parameters_.submap_min_neighborhood_size);
 }
 
-bool GridLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate) {
+bool GridLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter) {
+  charge(meter, kWorkPerPointDrawn * static_cast<double>(scale_.submap_nodes * map.clouds[candidate].points.size()));
   return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, std::numeric_limits<std::size_t>::max());
 }
 
 LoopMatcher::Found GridLoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
-                                         std::uint64_t candidate, const SearchWindow& window) {
+                                         std::uint64_t candidate, const SearchWindow& window, WorkMeter* meter) {
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const auto refused = [&](std::string_view reason) {
     return Found{expected, Eigen::Matrix3d::Zero(), 0.0, std::string(reason)};
@@ -81,6 +87,7 @@ LoopMatcher::Found GridLoopMatcher::find(const Map& map, const Chains& chains, s
   const Points points = adaptive_voxel_filter(
       to_points(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach)),
       parameters_.adaptive_voxel_filter);
+  charge(meter, kWorkPerMatch + kWorkPerPointAndTurn * static_cast<double>(points.size()) * window.theta);
   const std::shared_ptr<const BoundGrids> submap = submaps_.get(map, chains, candidate);
   const ScanMatch rough =
       FastCorrelativeMatcher(submap, {window.xy, window.theta, parameters_.min_score}).match(points, expected);

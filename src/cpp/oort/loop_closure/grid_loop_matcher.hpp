@@ -16,9 +16,9 @@ class GridLoopMatcher : public LoopMatcher {
   GridLoopMatcher(const Parameters& parameters, const LoopScale& scale);
 
   Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
-             const SearchWindow& window) override;
+             const SearchWindow& window, WorkMeter* meter = nullptr) override;
   /// Draws all of it.
-  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate) override;
+  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter = nullptr) override;
 
  private:
   bool is_small(const Chains& chains, std::uint64_t candidate) const;

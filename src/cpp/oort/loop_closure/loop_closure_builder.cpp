@@ -26,8 +26,10 @@ constexpr double kScanSigma = 0.03;        // [m]
 constexpr double kScanSigmaTheta = 0.008;  // [rad]
 constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015, 8.0};
 
-// Attempts that may wait for the next scans, so that none of these takes long: those of two to four nodes.
-constexpr std::size_t kMaxWaiting = 8;
+// Units of work: of looking for candidates, for each node and edge of the map; of the facing test, for each return.
+constexpr double kWorkPerNode = 0.8;
+constexpr double kWorkPerEdge = 0.3;
+constexpr double kWorkPerFacingReturn = 0.4;
 
 // A closure that moves the newest node by more waits for others that say the same.
 constexpr double kFar = 0.5;        // [m]
@@ -114,7 +116,10 @@ LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
       scan_matcher_(make_loop_matcher(parameters, scan_scale(parameters_, search_))),
       way_matcher_(make_loop_matcher(parameters, kWay)) {}
 
-void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end) {
+void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end,
+                                     WorkMeter* meter) {
+  charge(meter, kWorkPerNode * static_cast<double>(map.graph.nodes.size()) +
+                    kWorkPerEdge * static_cast<double>(map.graph.edges.size() + map.graph.switchable_edges.size()));
   if (search_.is_adaptive()) {
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
@@ -129,18 +134,12 @@ void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::
 }
 
 std::vector<Closure> LoopClosureBuilder::work(const Map& map, const Chains& chains, ClosureCounts& counts,
-                                              ClosureLog& log) {
-  std::vector<Closure> closures;
-  while (!waiting_.empty()) {
-    const bool must_go_on = waiting_.size() > kMaxWaiting;
-    const Attempt attempt = waiting_.front();
-    if (!matcher_for(attempt).draw(map, chains, attempt.candidate)) {
-      waiting_.pop_front();
-      for (const Closure& closure : make(attempt, map, chains, counts, log)) closures.push_back(closure);
-    }
-    if (!must_go_on) break;
-  }
-  return closures;
+                                              ClosureLog& log, WorkMeter* meter) {
+  if (waiting_.empty()) return {};
+  const Attempt attempt = waiting_.front();
+  if (matcher_for(attempt).draw(map, chains, attempt.candidate, meter)) return {};
+  waiting_.pop_front();
+  return make(attempt, map, chains, counts, log, meter);
 }
 
 std::vector<Closure> LoopClosureBuilder::work_off(const Map& map, const Chains& chains, ClosureCounts& counts,
@@ -153,8 +152,8 @@ std::vector<Closure> LoopClosureBuilder::work_off(const Map& map, const Chains& 
 }
 
 std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map& map, const Chains& chains,
-                                              ClosureCounts& counts, ClosureLog& log) {
-  LoopMatcher::Found found = match(map, chains, attempt);
+                                              ClosureCounts& counts, ClosureLog& log, WorkMeter* meter) {
+  LoopMatcher::Found found = match(map, chains, attempt, meter);
   const Closure closure{attempt.query, attempt.candidate, inverse(found.T_candidate_query),
                         inverse_covariance(found.T_candidate_query, found.covariance), found.hit_fraction};
   std::vector<Closure> believed;
@@ -252,9 +251,10 @@ LoopMatcher& LoopClosureBuilder::matcher_for(const Attempt& attempt) {
   return *(is_wide(attempt.window) && search_.is_adaptive() ? way_matcher_ : scan_matcher_);
 }
 
-LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chains, const Attempt& attempt) {
+LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chains, const Attempt& attempt,
+                                             WorkMeter* meter) {
   const auto [query, candidate, window] = attempt;
-  LoopMatcher::Found found = matcher_for(attempt).find(map, chains, query, candidate, window);
+  LoopMatcher::Found found = matcher_for(attempt).find(map, chains, query, candidate, window, meter);
   if (!found.refusal.empty()) return found;
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const Pose2 moved = between(expected, found.T_candidate_query);
@@ -263,6 +263,8 @@ LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chain
               is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
               std::abs(expected.theta) >= search_.match_filter.opposite_dir_threshold);
   if (!found.refusal.empty()) return found;
+  charge(meter, kWorkPerFacingReturn * static_cast<double>(map.clouds[query].points.size()) *
+                    (parameters_.candidate_search.submap_neighborhood_size + 1));
   const FacingMap facing(map, chains, candidate,
                          chains.neighborhood(candidate, static_cast<std::uint64_t>(
                                                             parameters_.candidate_search.submap_neighborhood_size)));

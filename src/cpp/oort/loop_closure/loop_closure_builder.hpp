@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "oort/geometry/work_meter.hpp"
 #include "oort/graph/relative_uncertainty.hpp"
 #include "oort/loop_closure/closure.hpp"
 #include "oort/loop_closure/closure_confirmation.hpp"
@@ -43,18 +44,20 @@ class LoopClosureBuilder {
   explicit LoopClosureBuilder(const Parameters& parameters);
 
   /// Notes what is worth an attempt now that the newest node, `query`, is there.
-  void look(const Map& map, const Chains& chains, std::uint64_t query) {
-    look_before(map, chains, query, map.graph.nodes.size());
+  void look(const Map& map, const Chains& chains, std::uint64_t query, WorkMeter* meter = nullptr) {
+    look_before(map, chains, query, map.graph.nodes.size(), meter);
   }
 
   /// The same of any node, with candidates among the nodes before `end` only.
-  void look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end);
+  void look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end,
+                   WorkMeter* meter = nullptr);
 
   bool has_work() const { return !waiting_.empty(); }
 
-  /// Does the next piece of what was noted: draws some scans of a submap, or makes one attempt, so that no scan has to
-  /// wait long; more only if too many attempts wait. Returns the closures that are believed with it.
-  std::vector<Closure> work(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log);
+  /// Does the next piece of what was noted: draws some scans of a submap, or makes one attempt. Returns the closures
+  /// that are believed with it.
+  std::vector<Closure> work(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log,
+                            WorkMeter* meter = nullptr);
 
   /// Does all of what was noted.
   std::vector<Closure> work_off(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log);
@@ -74,8 +77,8 @@ class LoopClosureBuilder {
   };
   LoopMatcher& matcher_for(const Attempt& attempt);
   std::vector<Closure> make(const Attempt& attempt, const Map& map, const Chains& chains, ClosureCounts& counts,
-                            ClosureLog& log);
-  LoopMatcher::Found match(const Map& map, const Chains& chains, const Attempt& attempt);
+                            ClosureLog& log, WorkMeter* meter);
+  LoopMatcher::Found match(const Map& map, const Chains& chains, const Attempt& attempt, WorkMeter* meter);
   SearchWindow window(const Map& map, std::uint64_t query, std::uint64_t candidate) const;
   bool must_be_confirmed(const Map& map, const Closure& closure) const;
 

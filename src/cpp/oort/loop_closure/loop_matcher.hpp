@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "oort/geometry/work_meter.hpp"
 #include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
 #include "oort/parameters/parameters.hpp"
@@ -51,11 +52,11 @@ class LoopMatcher {
   virtual ~LoopMatcher() = default;
 
   virtual Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
-                     const SearchWindow& window) = 0;
+                     const SearchWindow& window, WorkMeter* meter = nullptr) = 0;
 
   /// Draws the next scans of the candidate's submap, so that find() need not draw them all at once. False if there was
   /// nothing left to draw.
-  virtual bool draw(const Map& map, const Chains& chains, std::uint64_t candidate) = 0;
+  virtual bool draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter = nullptr) = 0;
 };
 
 /// The matcher that loop_closure_graph_builder.scanmatcher names.

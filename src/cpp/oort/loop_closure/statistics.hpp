@@ -32,29 +32,4 @@ struct TrackingCounts {
   std::uint64_t changes = 0;  ///< from one state to another
 };
 
-/// What the solutions made of the closures that were accepted (a switch below 0.5 is off).
-struct SolvedCounts {
-  std::uint64_t kept = 0;          ///< on at the last solution
-  std::uint64_t contradicted = 0;  ///< off at the last solution
-  std::uint64_t came_back = 0;     ///< times that one which was off was on at a later solution
-};
-
-/// Counts since the mapper was made.
-struct MapperStatistics {
-  std::uint64_t scans = 0;
-  std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: carried by odometry
-  std::uint64_t scans_matched = 0;
-  std::uint64_t nodes = 0;
-  std::uint64_t odometry_links = 0;                     ///< nodes whose match was refused
-  std::map<std::string, std::uint64_t> match_refusals;  ///< of nodes, by reason
-  std::uint64_t contradictions = 0;                     ///< chains begun as odometry and scans disagreed
-  TrackingCounts tracking;
-  ClosureCounts loops;
-  ClosureCounts docks;
-  SolvedCounts solved;
-  std::uint64_t solves = 0;
-  std::uint64_t solves_cut_short = 0;  ///< that ended before they converged
-  RefinementCounts refinement;
-};
-
 }  // namespace oort

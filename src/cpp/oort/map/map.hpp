@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "oort/geometry/point_cloud.hpp"
 #include "oort/graph/graph.hpp"
+#include "oort/map/point_clouds.hpp"
 
 namespace oort {
 
@@ -41,7 +41,7 @@ struct Location {
 /// Everything that makes a map: what the map file holds.
 struct Map {
   Graph graph;
-  std::vector<PointCloud> clouds;  ///< one per node, in the order of the nodes, in the sensor's frame
+  PointClouds clouds;  ///< one per node, in the order of the nodes, in the sensor's frame
   std::vector<IncrementalResult> incremental_results;
   std::vector<LoopResult> loop_results;
   std::vector<Location> locations;

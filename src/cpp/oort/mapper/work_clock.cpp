@@ -7,18 +7,24 @@
 namespace oort {
 namespace {
 
-double thread_seconds() {
+double seconds_of(clockid_t clock) {
   std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 }  // namespace
 
-WorkClock::WorkClock(double& seconds) : seconds_(seconds), started_(thread_seconds()) {}
+WorkClock::WorkClock(double& seconds) : seconds_(seconds), started_(seconds_of(CLOCK_THREAD_CPUTIME_ID)) {}
 
 WorkClock::~WorkClock() {
-  seconds_ += thread_seconds() - started_;
+  seconds_ += seconds_of(CLOCK_THREAD_CPUTIME_ID) - started_;
+}
+
+WallClock::WallClock(double& seconds) : seconds_(seconds), started_(seconds_of(CLOCK_MONOTONIC)) {}
+
+WallClock::~WallClock() {
+  seconds_ += seconds_of(CLOCK_MONOTONIC) - started_;
 }
 
 }  // namespace oort

@@ -4,13 +4,13 @@
 
 namespace oort {
 
-/// What the CPU time of mapping went into, in seconds of the thread that maps. For people only: nothing that is decided
-/// may depend on a clock.
+/// What the time of mapping went into. For people only: nothing that is decided may depend on a clock.
 struct WorkSeconds {
-  double tracking = 0.0;    ///< matching scans with the local map
-  double candidates = 0.0;  ///< looking for places that may have been seen before
-  double matching = 0.0;    ///< drawing those places and matching with them
-  double solving = 0.0;     ///< the graph
+  double tracking = 0.0;    ///< CPU time of local SLAM [s]
+  double candidates = 0.0;  ///< CPU time of looking for places that may have been seen before [s]
+  double matching = 0.0;    ///< CPU time of drawing those places and matching with them [s]
+  double solving = 0.0;     ///< CPU time of solving the graph [s]
+  double waiting = 0.0;     ///< wall time that local SLAM waited for global SLAM [s]
 };
 
 /// Adds the CPU time of this thread, from here to the end of the scope, to a sum.
@@ -20,6 +20,19 @@ class WorkClock {
   ~WorkClock();
   WorkClock(const WorkClock&) = delete;
   WorkClock& operator=(const WorkClock&) = delete;
+
+ private:
+  double& seconds_;
+  double started_;
+};
+
+/// The same of wall time.
+class WallClock {
+ public:
+  explicit WallClock(double& seconds);
+  ~WallClock();
+  WallClock(const WallClock&) = delete;
+  WallClock& operator=(const WallClock&) = delete;
 
  private:
   double& seconds_;

@@ -9,6 +9,7 @@
 #include "oort/local_slam/incremental_graph_builder.hpp"
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
+#include "oort/mapper/solve_schedule.hpp"
 #include "oort/merging/append_map.hpp"
 
 namespace oort {
@@ -23,9 +24,6 @@ constexpr double kJointSigmaTheta = 0.05;  // [rad]
 // mapper/mapper.cpp.
 constexpr double kUnmatchedVariance = 0.1;
 
-// What does not surprise waits until so many closures were added as are a twentieth of the nodes.
-constexpr std::size_t kLeastWait = 10;
-constexpr std::size_t kWaitShare = 20;
 constexpr int kIterations = 15;
 
 Edge joint_edge(const Map& map, const Joint& joint) {
@@ -57,20 +55,21 @@ ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, co
   const std::size_t link = map.graph.edges.size();
   map.graph.edges.push_back(joint_edge(map, joint));
   std::uint64_t next_id = next_edge_id(map.graph);
-  const std::size_t patience = std::max(kLeastWait, map.graph.nodes.size() / kWaitShare);
-  std::size_t waiting = 0;
+  SolveSchedule schedule(begin);  // what surprises is where the nodes after those lie
   for (const std::uint64_t node : outwards(begin, joint.after, map.graph.nodes.size())) {
     loops.look_before(map, chains, node, begin);
-    double surprise = 0.0;
     for (const Closure& closure : loops.work_off(map, chains, counts, log)) {
-      surprise = std::max(surprise, add_closure(closure, next_id++, map));
-      ++waiting;
+      schedule.add_closure(add_closure(closure, next_id++, map));
     }
-    if (surprise > kSurprise || waiting >= patience) {
-      OptimizerOptions options = optimizer_options(parameters, kIterations);
-      if (waiting < patience) options.first_free_node = begin;  // what surprises is where the new nodes lie
-      optimize(map.graph, options);
-      if (waiting >= patience) waiting = 0;
+    const SolveSchedule::Extent extent = schedule.due(map.graph.nodes.size(), counts.accepted);
+    if (extent == SolveSchedule::Extent::kNothing) continue;
+    OptimizerOptions options = optimizer_options(parameters, kIterations);
+    if (extent == SolveSchedule::Extent::kNewest) options.first_free_node = begin;
+    optimize(map.graph, options);
+    if (extent == SolveSchedule::Extent::kNewest) {
+      schedule.solved_newest();
+    } else {
+      schedule.solved_all(counts.accepted);
     }
   }
   const double scale = link_parameters(parameters.incremental_graph_builder).resume_scanmatch_cov_scale;

@@ -18,6 +18,10 @@ void declare_general(const Section& v, Parameters& p) {
     "A new node is made once so much time has passed since the last one, even if the base stands; 0: a parked robot "
     "adds none.")
       .own(0.0);
+  v(p.global_slam_thread, "global_slam_thread", true,
+    "Whether loops are looked for and the graph is solved in a thread beside the mapping of scans. The map is the same "
+    "without; scans then wait for that work.")
+      .own(true);
   v(p.motion_compensation, "motion_compensation", true,
     "Whether the beams of a scan with a time_increment are brought to its stamp by odometry (docs/motion.md).")
       .own(false, "A scan that took 0.1 s while the robot turned at 1 rad/s is bent by 6 degrees otherwise.");

@@ -280,6 +280,7 @@ struct Parameters {
   double linear_update;
   double angular_update;
   double time_update;
+  bool global_slam_thread;
   bool motion_compensation;
   double max_extrapolation;
   bool use_imu;

@@ -13,7 +13,7 @@
 namespace oort {
 namespace {
 
-void check_input(const std::vector<Node>& nodes, const std::vector<PointCloud>& clouds) {
+void check_input(const std::vector<Node>& nodes, const PointClouds& clouds) {
   if (nodes.size() != clouds.size()) {
     throw InputError("render: " + std::to_string(nodes.size()) + " nodes but " + std::to_string(clouds.size()) +
                      " clouds; each node needs its own");
@@ -59,8 +59,7 @@ InputError too_wide(const std::vector<Node>& nodes, const std::vector<Eigen::Ali
                     "choose a coarser resolution");
 }
 
-GridLimits limits_of(const std::vector<Node>& nodes, const std::vector<PointCloud>& clouds,
-                     const OutputMapParameters& parameters) {
+GridLimits limits_of(const std::vector<Node>& nodes, const PointClouds& clouds, const OutputMapParameters& parameters) {
   std::vector<Eigen::AlignedBox2d> boxes;
   boxes.reserve(nodes.size());
   Eigen::AlignedBox2d all;
@@ -109,8 +108,7 @@ void clear_footprints(const std::vector<Node>& nodes, double robot_radius, const
 
 }  // namespace
 
-RenderedMap render(const std::vector<Node>& nodes, const std::vector<PointCloud>& clouds,
-                   const OutputMapParameters& parameters) {
+RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, const OutputMapParameters& parameters) {
   check_input(nodes, clouds);
   if (!(parameters.robot_radius >= 0.0) || !std::isfinite(parameters.robot_radius)) {
     throw ParameterError("output_map: robot_radius must be a distance in metres, not " +

@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "oort/geometry/point_cloud.hpp"
 #include "oort/graph/graph.hpp"
+#include "oort/map/point_clouds.hpp"
 #include "oort/parameters/parameters.hpp"
 #include "oort/render/occupancy_grid.hpp"
 
@@ -24,7 +24,6 @@ struct RenderedMap {
 /// `clouds[k]` was taken at `nodes[k]`, in the sensor's frame. No nodes give empty grids (width and height 0).
 /// Throws ParameterError for parameters that make no sense, InputError (naming the node) if the counts differ, a pose
 /// is not finite or a node or its cloud lies too far off for a grid.
-RenderedMap render(const std::vector<Node>& nodes, const std::vector<PointCloud>& clouds,
-                   const OutputMapParameters& parameters);
+RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, const OutputMapParameters& parameters);
 
 }  // namespace oort

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
+#include <functional>
 #include <string_view>
 
 #include "frsm/table.hpp"
@@ -70,6 +72,9 @@ struct Match {
   bool usable() const { return status == Status::kOk || status == Status::kDegenerate; }
 };
 
+/// Is told, while a match is searched for, how many cells of tables were looked up since it was told last.
+using OnLookups = std::function<void(std::uint64_t)>;
+
 /// Correlative scan matcher: exhaustive search (or branch and bound, same result) on the lattice of the guess, then a
 /// continuous polish. Maximises  scale * N_eff * score(T) - 0.5 * |T - prior|^2.  Pure and re-entrant.
 class Matcher {
@@ -79,8 +84,8 @@ class Matcher {
   /// `body`: points in the body frame; those that are not finite are ignored. `prior` may be null.
   /// Throws std::invalid_argument on a guess or window that is not finite, or a covariance that is not positive
   /// definite.
-  Match match(const Table& table, const Points& body, const Pose& guess, const Window& window,
-              const Prior* prior) const;
+  Match match(const Table& table, const Points& body, const Pose& guess, const Window& window, const Prior* prior,
+              const OnLookups& on_lookups = {}) const;
 
   const MatcherParams& params() const { return params_; }
 

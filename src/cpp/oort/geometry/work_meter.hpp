@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+namespace oort {
+
+/// Counts work while it is done. One unit is about a microsecond of one core of a laptop; it is counted from sizes,
+/// never from a clock, so that the same work counts the same everywhere. What is dear is charged before it is done.
+class WorkMeter {
+ public:
+  virtual ~WorkMeter() = default;
+  virtual void charge(std::uint64_t units) = 0;
+};
+
+/// Charges `units` if there is somebody who counts.
+inline void charge(WorkMeter* meter, double units) {
+  if (meter != nullptr) meter->charge(static_cast<std::uint64_t>(units) + 1);
+}
+
+}  // namespace oort

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/local_slam/chain_builder.hpp"
+
+#include <memory>
+
+#include "oort/matching/frsm_adapter.hpp"
+
+namespace oort {
+namespace {
+
+// Variance of x, y and theta of a scan that nothing was matched with: FRSM's value for its first scan.
+constexpr double kUnmatchedVariance = 0.1;
+
+// So many nodes in a row that only odometry places, and the scan matcher starts afresh.
+constexpr int kMaxRejections = 5;
+
+// When odometry and a match contradict each other: with so many hits the match is the better guess. The least variances
+// of the edge that stands for both; edges as wide as that begin a segment wherever they are read (Chains).
+constexpr double kTellingHits = 0.8;
+constexpr double kContradictedVariance = 0.26;       // [m^2], for each of x and y
+constexpr double kContradictedVarianceTheta = 0.06;  // [rad^2]
+
+// A scan of which fewer hit is poorly matched; so many in a row, and the local map is not of this place. The scans of a
+// good match hit by nine tenths and more; matches go on by chance after a robot was put down elsewhere.
+constexpr double kPoorHits = 0.6;
+constexpr int kMaxPoor = 8;
+
+Eigen::Matrix3d unmatched_covariance(double scale) {
+  return kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
+}
+
+Eigen::Matrix3d least_contradiction() {
+  return Eigen::Vector3d(kContradictedVariance, kContradictedVariance, kContradictedVarianceTheta).asDiagonal();
+}
+
+}  // namespace
+
+ChainBuilder::ChainBuilder(const Parameters& parameters) : parameters_(parameters), matcher_(parameters) {}
+
+void ChainBuilder::begin_map() {
+  forget();
+  begin_ = Begin::kMap;
+  next_id_ = 0;
+}
+
+void ChainBuilder::begin_session(const SessionStart& start, std::uint64_t node_count) {
+  forget();
+  begin_ = Begin::kSession;
+  session_ = start;
+  next_id_ = node_count;
+}
+
+// A session on the map in memory is the same as one on that map loaded: nothing learned, nothing half done.
+void ChainBuilder::forget() {
+  matcher_ = IncrementalGraphBuilder(parameters_);
+  rejections_in_a_row_ = poor_in_a_row_ = 0;
+}
+
+void ChainBuilder::interrupt() {
+  if (begin_ == Begin::kNot) begin_ = Begin::kAfterPause;
+}
+
+void ChainBuilder::track(LocalScan& scan) {
+  Pose2 T_previous_sensor = between(T_odom_sensor_tracked_, scan.T_odom_sensor);
+  const bool is_first = !is_going_on();
+  if (is_first) {  // the first scan of a segment has nothing to be matched with
+    Pose2 T_local_start;
+    if (begin_ == Begin::kAfterPause) T_local_start = T_local_sensor_tracked_ * T_previous_sensor;
+    if (begin_ == Begin::kSession) T_local_start = session_.T_map_sensor;
+    matcher_.begin(T_local_start);
+    local_map_ = LocalMap::kKnown;
+    T_previous_sensor = Pose2{};
+  }
+  scan.tracked = matcher_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor);
+  scan.was_tracked = true;
+  scan.missed = !is_first && !matcher_.is_placed(scan.tracked);
+  if (scan.tracked.restarted) local_map_ = LocalMap::kFresh;
+  restart_if_poor(scan);
+  T_odom_sensor_tracked_ = scan.T_odom_sensor;
+  T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
+  if (scan.tracked.usable) ++counts_.scans_matched;
+}
+
+void ChainBuilder::extrapolate(LocalScan& scan) const {
+  scan.tracked.T_local_sensor = T_local_sensor_tracked_ * between(T_odom_sensor_tracked_, scan.T_odom_sensor);
+}
+
+ChainNode ChainBuilder::add_node(LocalScan& scan) {
+  scan.cloud.id = next_id_;
+  ChainNode node = is_going_on() ? extend(scan) : begin_segment(scan);
+  node.addition.cloud = std::make_shared<const PointCloud>(scan.cloud);
+  node.addition.result.id = next_id_;
+  node.addition.result.T_local_id = scan.tracked.T_local_sensor;
+  newest_ = {next_id_++, scan.cloud.time, scan.tracked.T_local_sensor, scan.T_odom_sensor, scan.T_odom_base};
+  if (node.addition.matched) anchor_ = newest_;
+  restart_if_rejected(scan, node.addition.matched);
+  T_local_sensor_tracked_ = scan.tracked.T_local_sensor;  // linking may have corrected it
+  begin_ = Begin::kNot;
+  scan.is_node = true;
+  ++counts_.nodes;
+  return node;
+}
+
+/// The scan begins a local map at this pose. What it hit before still says how well it was matched.
+void ChainBuilder::begin_local_map(LocalScan& scan, const Pose2& T_local_sensor) {
+  const double hits = scan.tracked.hit_fraction;
+  matcher_.begin(T_local_sensor);
+  scan.tracked = matcher_.track(returns_of(scan.cloud), scan.cloud.time, Pose2{});
+  scan.tracked.hit_fraction = hits;
+}
+
+void ChainBuilder::restart_if_poor(LocalScan& scan) {
+  const bool poor = scan.tracked.usable && scan.tracked.hit_fraction < kPoorHits && matcher_.knows_odometry();
+  poor_in_a_row_ = poor ? poor_in_a_row_ + 1 : 0;
+  if (poor_in_a_row_ < kMaxPoor) return;
+  poor_in_a_row_ = 0;
+  begin_local_map(scan, scan.tracked.T_local_sensor);
+  scan.tracked.restarted = true;
+  scan.missed = true;
+  local_map_ = LocalMap::kFreshPoor;
+}
+
+void ChainBuilder::restart_if_rejected(const LocalScan& scan, bool matched) {
+  rejections_in_a_row_ = matched ? 0 : rejections_in_a_row_ + 1;
+  if (rejections_in_a_row_ < kMaxRejections) return;
+  matcher_.begin(scan.tracked.T_local_sensor);
+  local_map_ = LocalMap::kFresh;
+}
+
+ChainNode ChainBuilder::begin_segment(LocalScan& scan) {
+  const LinkParameters p = link_parameters(parameters_.incremental_graph_builder);
+  ChainNode node;
+  node.addition.begins_segment = true;
+  node.addition.result.target = next_id_;
+  node.addition.result.covariance = unmatched_covariance(p.scanmatch_cov_scale);
+  if (begin_ == Begin::kMap) return node;
+  const bool is_session = begin_ == Begin::kSession;
+  const std::uint64_t target = is_session ? session_.nearest_node : newest_.id;
+  node.attachment = Attachment::kLoose;
+  node.addition.from = target;
+  node.addition.T_from_node =
+      is_session ? session_.T_nearest_sensor : between(newest_.T_odom_sensor, scan.T_odom_sensor);
+  node.addition.edges = {loose_edge(
+      target, node.addition.T_from_node,
+      unmatched_covariance(is_session ? p.resume_scanmatch_cov_scale : p.inflate_scanmatch_cov_scale), scan)};
+  return node;
+}
+
+ChainNode ChainBuilder::extend(LocalScan& scan) {
+  const Pose2 T_newest_node = between(newest_.T_odom_sensor, scan.T_odom_sensor);
+  // What is matched after a gap says where the node is from before the gap, not from the nodes within.
+  const bool after_gap = anchor_.id != newest_.id;
+  MatchLink match = matcher_.link(anchor_.T_local_sensor, between(anchor_.T_odom_sensor, scan.T_odom_sensor),
+                                  scan.tracked, after_gap && matcher_.knows_odometry());
+  const bool is_fresh = local_map_ != LocalMap::kKnown;
+  if (match.contradicts_odometry && !is_fresh) return contradict(scan, T_newest_node, match);
+  if (is_fresh) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
+  const bool believed = match.refusal.empty();
+  ChainNode node;
+  const auto add_edge = [&](std::uint64_t from, const Pose2& pose, const Eigen::Matrix3d& covariance,
+                            ConstraintType type) {
+    node.addition.edges.push_back({0, from, next_id_, {scan.cloud.time, next_id_, pose, covariance, type}});
+  };
+  if (!believed || after_gap) {
+    Eigen::Matrix3d covariance = matcher_.odometry_covariance(T_newest_node, match.refusal);
+    if (local_map_ == LocalMap::kFreshPoor) covariance += least_contradiction();
+    add_edge(newest_.id, T_newest_node, covariance, ConstraintType::kOdometry);
+  }
+  if (believed) {
+    add_edge(anchor_.id, match.T_anchor_node, match.covariance, ConstraintType::kLaser);
+    node.addition.from = anchor_.id;
+    node.addition.T_from_node = match.T_anchor_node;
+  } else {
+    ++counts_.odometry_links;
+    ++counts_.match_refusals[match.refusal];
+    scan.missed = true;
+    node.addition.from = newest_.id;
+    node.addition.T_from_node = T_newest_node;
+    if (!is_fresh) {
+      scan.tracked.T_local_sensor = newest_.T_local_sensor * T_newest_node;
+      matcher_.correct(scan.tracked.T_local_sensor);
+    }
+  }
+  node.addition.begins_segment = is_fresh;
+  node.addition.matched = believed || is_fresh;
+  if (is_fresh) node.attachment = local_map_ == LocalMap::kFreshPoor ? Attachment::kGuess : Attachment::kLoose;
+  node.addition.result.target = newest_.id;
+  node.addition.result.covariance = scan.tracked.covariance;
+  node.addition.result.T_target_id = from_newest(scan.tracked.T_local_sensor);
+  node.addition.result.hit_fraction = scan.tracked.hit_fraction;
+  local_map_ = LocalMap::kKnown;
+  return node;
+}
+
+// Odometry slipped, or was carried, or the match is a chance one: which of them is not known. A segment begins with the
+// scan, whose edge is as wide as what they say is apart, so that closures decide where it belongs.
+ChainNode ChainBuilder::contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchLink& match) {
+  const auto from_newest_node = [&](const Pose2& T_anchor_node) {
+    return from_newest(anchor_.T_local_sensor * T_anchor_node);
+  };
+  const Pose2 apart = between(T_newest_node, from_newest_node(match.T_anchor_node));
+  const bool is_telling = scan.tracked.hit_fraction >= kTellingHits;
+  const Pose2 chosen = is_telling ? from_newest_node(match.T_anchor_node_weighed) : T_newest_node;
+  const double distance2 = apart.translation().squaredNorm();
+  const Eigen::Vector3d far_apart(distance2, distance2, apart.theta * apart.theta);
+  const Eigen::Matrix3d covariance = least_contradiction() + Eigen::Matrix3d(far_apart.asDiagonal());
+  ChainNode node;
+  node.attachment = is_telling ? Attachment::kLoose : Attachment::kGuess;
+  node.addition.begins_segment = true;
+  node.addition.from = newest_.id;
+  node.addition.T_from_node = chosen;
+  node.addition.edges = {loose_edge(newest_.id, chosen, covariance, scan)};
+  begin_local_map(scan, newest_.T_local_sensor * chosen);
+  scan.tracked.status = "contradicts odometry";
+  node.addition.result.target = next_id_;
+  node.addition.result.covariance = covariance;
+  node.addition.result.hit_fraction = scan.tracked.hit_fraction;
+  ++counts_.contradictions;
+  return node;
+}
+
+Edge ChainBuilder::loose_edge(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
+                              const LocalScan& scan) const {
+  return {0, target, next_id_, {scan.cloud.time, next_id_, T_target_node, covariance, ConstraintType::kOdometry}};
+}
+
+}  // namespace oort

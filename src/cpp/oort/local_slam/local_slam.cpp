@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/local_slam/local_slam.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "oort/geometry/errors.hpp"
+#include "oort/map/map_check.hpp"
+
+namespace oort {
+namespace {
+
+// A node is made when scans tell of so many times the motion that makes one due, of which odometry tells less.
+constexpr double kUnnoticed = 1.5;
+
+void check_odometry(const LaserScan& scan, const Pose2& T_odom_base) {
+  if (!is_finite(T_odom_base) || !std::isfinite(scan.time)) {
+    throw InputError("scan: its time or odometry pose is not finite; check the transform odom -> base");
+  }
+  check_reach(T_odom_base, "scan: its odometry pose");
+}
+
+}  // namespace
+
+LocalSlam::LocalSlam(const Parameters& parameters) : parameters_(parameters), chain_(parameters) {}
+
+void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
+  if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
+  if (last_) throw StateError("the sensor's place on the base cannot change while scans are being mapped");
+  T_base_sensor_ = T_base_sensor;
+}
+
+void LocalSlam::begin_map() {
+  chain_.begin_map();
+  last_.reset();
+}
+
+void LocalSlam::begin_session(const SessionStart& start, std::uint64_t node_count) {
+  chain_.begin_session(start, node_count);
+  last_.reset();
+}
+
+LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
+  check_odometry(scan, T_odom_base);
+  LocalScan now;
+  now.cloud = deskewed(scan, sweep_of_base);
+  now.T_odom_base_measured = T_odom_base;
+  now.T_odom_base = corrected(T_odom_base);
+  now.T_odom_sensor = now.T_odom_base * T_base_sensor_;
+  ++counts_.scans;
+
+  const bool can_match = has_returns(now);
+  if (!can_match) ++counts_.scans_too_small;
+  bool due = can_match && is_due(now);
+  if (can_match && (due || parameters_.incremental_graph_builder.match_every_scan)) {
+    chain_.track(now);
+  } else {
+    chain_.extrapolate(now);
+  }
+  now.missed = now.missed || !can_match;
+  due = due || has_moved_unnoticed(now);
+
+  Result result;
+  result.outcome = due ? ScanOutcome::kNode : can_match ? ScanOutcome::kCarried : ScanOutcome::kSkipped;
+  if (due) result.node = chain_.add_node(now);
+  last_ = std::move(now);
+  return result;
+}
+
+std::optional<ChainNode> LocalSlam::make_node() {
+  if (last_->is_node || !has_returns(*last_)) return std::nullopt;
+  if (!last_->was_tracked) chain_.track(*last_);
+  return chain_.add_node(*last_);
+}
+
+// Odometry's own scales of way and turn are off by little over the length of a scan: the motion is taken as measured.
+PointCloud LocalSlam::deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const {
+  PointCloud cloud = to_point_cloud(scan);
+  if (!parameters_.motion_compensation) return cloud;
+  return compensate_motion(std::move(cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
+}
+
+/// Odometry with what it is always wrong by taken out of each motion.
+Pose2 LocalSlam::corrected(const Pose2& T_odom_base) const {
+  if (!last_ || !chain_.matcher().learns_odometry()) return T_odom_base;
+  return last_->T_odom_base * chain_.matcher().corrected(between(last_->T_odom_base_measured, T_odom_base));
+}
+
+bool LocalSlam::has_returns(const LocalScan& scan) const {
+  return count_returns(scan.cloud) >= static_cast<std::size_t>(parameters_.min_pointcloud_size);
+}
+
+/// The motion gate: whether the base has moved so far that a node is due.
+bool LocalSlam::is_due(const LocalScan& scan) const {
+  if (!chain_.is_going_on()) return true;
+  const double since = std::abs(scan.cloud.time - chain_.newest_time());  // a clock may have been set back
+  if (parameters_.time_update > 0.0 && since >= parameters_.time_update) return true;
+  const Pose2 moved = between(chain_.T_odom_base_newest(), scan.T_odom_base);
+  return moved.translation().norm() >= parameters_.linear_update || std::abs(moved.theta) >= parameters_.angular_update;
+}
+
+/// Wheels that slip, or a robot that is carried: its scans tell of a motion that odometry does not.
+bool LocalSlam::has_moved_unnoticed(const LocalScan& scan) const {
+  if (!chain_.is_going_on() || !scan.tracked.usable || !chain_.matcher().knows_odometry()) return false;
+  const Pose2 moved = T_base_sensor_ * chain_.from_newest(scan.tracked.T_local_sensor) * inverse(T_base_sensor_);
+  return moved.translation().norm() >= kUnnoticed * parameters_.linear_update ||
+         std::abs(moved.theta) >= kUnnoticed * parameters_.angular_update;
+}
+
+}  // namespace oort

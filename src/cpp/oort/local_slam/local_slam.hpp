@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "oort/geometry/point_cloud.hpp"
+#include "oort/geometry/sweep.hpp"
+#include "oort/local_slam/chain_builder.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+enum class ScanOutcome {
+  kNode,     ///< the scan made a node
+  kCarried,  ///< it was located relative to the last node
+  kSkipped,  ///< it had too few returns: located by odometry alone, if there is a node to be relative to
+};
+
+struct LocalCounts {
+  std::uint64_t scans = 0;
+  std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: carried by odometry
+};
+
+/// The local lane: a scan with odometry in, its pose relative to the newest node out. The work for a scan is bounded by
+/// constants and waits for nothing; the map's solution has no bearing on it.
+class LocalSlam {
+ public:
+  struct Result {
+    ScanOutcome outcome = ScanOutcome::kSkipped;
+    std::optional<ChainNode> node;  ///< that the scan made
+  };
+
+  explicit LocalSlam(const Parameters& parameters);
+
+  /// Throws StateError once scans are being mapped, InputError if the pose is not finite.
+  void mount_sensor(const Pose2& T_base_sensor);
+  const Pose2& T_base_sensor() const { return T_base_sensor_; }
+
+  void begin_map();
+  void begin_session(const SessionStart& start, std::uint64_t node_count);
+  void interrupt() { chain_.interrupt(); }
+
+  /// Throws InputError if the scan's limits, the pose or the motion are not finite; nothing changes then.
+  Result add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base);
+
+  /// Makes the latest scan a node if it is none and has returns enough.
+  std::optional<ChainNode> make_node();
+
+  /// Whether the next scan begins a map.
+  bool begins_map() const { return chain_.begins_map(); }
+  /// Whether the latest scan is located relative to a node.
+  bool has_pose() const { return last_.has_value() && chain_.is_going_on(); }
+  /// The latest scan. There must be one.
+  const LocalScan& last_scan() const { return *last_; }
+  bool has_scan() const { return last_.has_value(); }
+  /// Where the latest scan was taken, as odometry has it.
+  Pose2 T_odom_sensor_measured() const { return last_->T_odom_base_measured * T_base_sensor_; }
+  std::uint64_t newest_node() const { return chain_.newest_node(); }
+  Pose2 T_newest_sensor() const { return chain_.from_newest(last_->tracked.T_local_sensor); }
+
+  const LocalCounts& counts() const { return counts_; }
+  const ChainCounts& chain_counts() const { return chain_.counts(); }
+
+ private:
+  PointCloud deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const;
+  Pose2 corrected(const Pose2& T_odom_base) const;
+  bool has_returns(const LocalScan& scan) const;
+  bool is_due(const LocalScan& scan) const;
+  bool has_moved_unnoticed(const LocalScan& scan) const;
+
+  Parameters parameters_;
+  Pose2 T_base_sensor_;
+  ChainBuilder chain_;
+  std::optional<LocalScan> last_;
+  LocalCounts counts_;
+};
+
+}  // namespace oort

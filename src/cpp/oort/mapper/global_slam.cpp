@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapper/global_slam.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "oort/maintenance/refinement.hpp"
+
+namespace oort {
+namespace {
+
+constexpr int kIterationsWhileMapping = 15;
+constexpr int kFinalIterations = 100;
+
+}  // namespace
+
+GlobalSlam::GlobalSlam(const Parameters& parameters)
+    : parameters_(parameters), loops_(parameters), docks_(parameters) {}
+
+void GlobalSlam::set_map(const Map& map) {
+  map_.set_map(map);
+  make_dock_closures_firm(map_.edit(), parameters_.dock_graph_builder.closure_firmness);
+  begin_session();
+  schedule_ = SolveSchedule();
+  schedule_.solved_all(map_.node_count());
+  is_on_.clear();
+  count_switches();
+}
+
+void GlobalSlam::begin_session() {
+  loops_ = LoopClosureBuilder(parameters_);
+  not_looked_from_.clear();
+}
+
+void GlobalSlam::add(const NodeAddition& node) {
+  not_looked_from_.push_back(map_.node_count());
+  map_.add(node);
+}
+
+bool GlobalSlam::has_work() const {
+  return !not_looked_from_.empty() || loops_.has_work() ||
+         schedule_.due(map_.node_count(), map_.node_count()) != SolveSchedule::Extent::kNothing;
+}
+
+Correction GlobalSlam::work(WorkMeter& meter) {
+  const SolveSchedule::Extent extent = schedule_.due(map_.node_count(), map_.node_count());
+  if (extent != SolveSchedule::Extent::kNothing) {
+    solve_due(extent, &meter);
+    return solved();
+  }
+  if (!not_looked_from_.empty()) {
+    const WorkClock clock(work_seconds_.candidates);
+    loops_.look(map(), map_.chains(), not_looked_from_.front(), &meter);
+    not_looked_from_.pop_front();
+    return {{}, std::nullopt, counts_};
+  }
+  const WorkClock clock(work_seconds_.matching);
+  return found(loops_.work(map(), map_.chains(), counts_.loops, closure_log_, &meter));
+}
+
+Correction GlobalSlam::finish() {
+  Correction all;
+  while (!not_looked_from_.empty() || loops_.has_work()) {
+    if (!not_looked_from_.empty()) {
+      loops_.look(map(), map_.chains(), not_looked_from_.front(), nullptr);
+      not_looked_from_.pop_front();
+      continue;
+    }
+    const WorkClock clock(work_seconds_.matching);
+    const Correction some = found(loops_.work_off(map(), map_.chains(), counts_.loops, closure_log_));
+    all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
+  }
+  if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(kFinalIterations);
+  if (parameters_.final_refinement) counts_.refinement = refine(map_.edit());
+  all.solution = map_.solution();
+  all.counts = counts_;
+  return all;
+}
+
+Correction GlobalSlam::link_dock(const std::vector<Location>& locations) {
+  map_.edit().locations = locations;
+  std::optional<Closure> closure;
+  {
+    const WorkClock clock(work_seconds_.matching);
+    closure = docks_.find(map(), map_.chains(), map_.node_count() - 1, counts_.docks);
+  }
+  if (!closure) return {{}, std::nullopt, counts_};
+  found({*closure});
+  solve_anew(kIterationsWhileMapping);
+  Correction correction = solved();
+  correction.closures = {*closure};
+  return correction;
+}
+
+Correction GlobalSlam::found(const std::vector<Closure>& closures) {
+  for (const Closure& closure : closures) schedule_.add_closure(map_.add(closure));
+  return {closures, std::nullopt, counts_};
+}
+
+Correction GlobalSlam::solved() {
+  count_switches();
+  return {{}, map_.solution(), counts_};
+}
+
+void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {
+  if (extent == SolveSchedule::Extent::kNewest && solve_newest(meter)) return;
+  solve(kIterationsWhileMapping, 0, meter);
+  schedule_.solved_all(map_.node_count());
+}
+
+// False if most of the new closures still disagree: what they say is about the nodes before, too.
+bool GlobalSlam::solve_newest(WorkMeter* meter) {
+  const auto closures = static_cast<std::ptrdiff_t>(schedule_.pending());
+  const std::vector<double> chi2 =
+      solve(kIterationsWhileMapping, map_.node_count() - SolveSchedule::kNewestNodes, meter).chi_squared;
+  schedule_.solved_newest();
+  const auto disagrees = [](double value) { return value > kAgreement; };
+  return 2 * std::count_if(chi2.end() - closures, chi2.end(), disagrees) <= closures;
+}
+
+// Links that an earlier false closure had switched off stay off, as nothing pulls at a switch that is 0. So the whole
+// graph is solved once more with all of them on, and the better of the two solutions counts.
+void GlobalSlam::solve_anew(int max_iterations) {
+  const double cost = solve(max_iterations, 0, nullptr).final_cost;
+  Graph& graph = map_.edit().graph;
+  Graph kept = graph;
+  for (SwitchableEdge& edge : graph.switchable_edges) edge.switch_value = 1.0;
+  if (solve(max_iterations, 0, nullptr).final_cost >= cost) graph = std::move(kept);
+  schedule_.solved_all(map_.node_count());
+  count_switches();
+}
+
+OptimizerSummary GlobalSlam::solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter) {
+  const WorkClock clock(work_seconds_.solving);
+  OptimizerOptions options = optimizer_options(parameters_, max_iterations);
+  options.first_free_node = first_free_node;
+  options.meter = meter;
+  const OptimizerSummary summary = optimize(map_.edit().graph, options);
+  ++counts_.solves;
+  if (!summary.converged) ++counts_.solves_cut_short;
+  return summary;
+}
+
+// Closures are counted by what the latest solution says of them: kept, contradicted, or kept again.
+void GlobalSlam::count_switches() {
+  const std::vector<SwitchableEdge>& closures = map().graph.switchable_edges;
+  is_on_.resize(closures.size(), true);
+  counts_.solved.kept = 0;
+  for (std::size_t k = 0; k < closures.size(); ++k) {
+    const bool on = closures[k].is_on();
+    if (on && !is_on_[k]) ++counts_.solved.came_back;
+    if (on) ++counts_.solved.kept;
+    is_on_[k] = on;
+  }
+  counts_.solved.contradicted = closures.size() - counts_.solved.kept;
+}
+
+}  // namespace oort

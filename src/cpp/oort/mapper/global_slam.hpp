@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "oort/geometry/work_meter.hpp"
+#include "oort/loop_closure/closure_log.hpp"
+#include "oort/loop_closure/dock_graph_builder.hpp"
+#include "oort/loop_closure/loop_closure_builder.hpp"
+#include "oort/mapper/growing_map.hpp"
+#include "oort/mapper/solve_schedule.hpp"
+#include "oort/mapper/statistics.hpp"
+#include "oort/mapper/work_clock.hpp"
+#include "oort/parameters/parameters.hpp"
+
+namespace oort {
+
+/// What global SLAM found out: closures to add, then a solution that knows them and all before.
+struct Correction {
+  std::vector<Closure> closures;
+  std::optional<Solution> solution;
+  GlobalCounts counts;  ///< since the beginning
+};
+
+/// Global SLAM: looks for loops, matches and confirms them, solves the graph. It works on a map of its own, to which
+/// the local lane's nodes are added, in pieces that are charged to a meter. Sequential; knows nothing of threads.
+class GlobalSlam {
+ public:
+  explicit GlobalSlam(const Parameters& parameters);
+
+  /// Replaces the map. Nothing that was begun on the old one goes on.
+  void set_map(const Map& map);
+  /// A new session: loops are looked for as on a map that was just loaded.
+  void begin_session();
+  void add(const NodeAddition& node);
+
+  bool has_work() const;
+  /// Does the next piece of work.
+  Correction work(WorkMeter& meter);
+
+  /// Works off all that was noted, solves with all that is known, and lets scans agree (refinement.hpp).
+  Correction finish();
+
+  /// Links the newest node to the dock and solves. Without closures if what it sees does not fit. `locations` tell of
+  /// docks.
+  Correction link_dock(const std::vector<Location>& locations);
+
+  const Map& map() const { return map_.map(); }
+  const GlobalCounts& counts() const { return counts_; }
+  const WorkSeconds& work_seconds() const { return work_seconds_; }
+  ClosureLog& closure_log() { return closure_log_; }
+  const ClosureLog& closure_log() const { return closure_log_; }
+
+ private:
+  Correction found(const std::vector<Closure>& closures);
+  Correction solved();
+  void solve_due(SolveSchedule::Extent extent, WorkMeter* meter);
+  bool solve_newest(WorkMeter* meter);
+  void solve_anew(int max_iterations);
+  OptimizerSummary solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter);
+  void count_switches();
+
+  Parameters parameters_;
+  GrowingMap map_;
+  LoopClosureBuilder loops_;
+  DockGraphBuilder docks_;
+  SolveSchedule schedule_;
+  std::deque<std::uint64_t> not_looked_from_;  // nodes for which no candidates were looked for yet
+  std::vector<bool> is_on_;                    // each switchable edge, at the last solution
+  GlobalCounts counts_;
+  ClosureLog closure_log_;
+  WorkSeconds work_seconds_;
+};
+
+}  // namespace oort

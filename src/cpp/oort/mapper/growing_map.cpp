@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapper/growing_map.hpp"
+
+#include <utility>
+
+namespace oort {
+
+void GrowingMap::set_map(Map map) {
+  map_ = std::move(map);
+  chains_ = Chains::of_map(map_);
+  placements_.clear();
+  next_edge_id_ = next_edge_id(map_.graph);
+}
+
+void GrowingMap::add(const NodeAddition& addition) {
+  Node node;
+  node.id = node_count();
+  node.pose = addition.from ? map_.graph.nodes[*addition.from].pose * addition.T_from_node : addition.T_from_node;
+  map_.graph.nodes.push_back(node);
+  for (Edge edge : addition.edges) {
+    edge.id = next_edge_id_++;
+    map_.graph.edges.push_back(edge);
+  }
+  chains_.add(addition.begins_segment, addition.matched, addition.result.T_local_id);
+  map_.clouds.push_back(addition.cloud);
+  map_.incremental_results.push_back(addition.result);
+  placements_.push_back({addition.from, addition.T_from_node});
+}
+
+double GrowingMap::add(const Closure& closure) {
+  return add_closure(closure, next_edge_id_++, map_);
+}
+
+void GrowingMap::apply(const Solution& solution) {
+  std::vector<Node>& nodes = map_.graph.nodes;
+  for (std::size_t k = 0; k < solution.poses.size(); ++k) nodes[k].pose = solution.poses[k];
+  const std::size_t first_placed = nodes.size() - placements_.size();
+  for (std::size_t k = solution.poses.size(); k < nodes.size(); ++k) {
+    const Placement& placement = placements_[k - first_placed];
+    if (placement.from) nodes[k].pose = nodes[*placement.from].pose * placement.T_from_node;
+  }
+  for (std::size_t k = 0; k < solution.switches.size(); ++k) {
+    map_.graph.switchable_edges[k].switch_value = solution.switches[k];
+  }
+}
+
+Solution GrowingMap::solution() const {
+  Solution solution;
+  solution.poses.reserve(map_.graph.nodes.size());
+  solution.switches.reserve(map_.graph.switchable_edges.size());
+  for (const Node& node : map_.graph.nodes) solution.poses.push_back(node.pose);
+  for (const SwitchableEdge& edge : map_.graph.switchable_edges) solution.switches.push_back(edge.switch_value);
+  return solution;
+}
+
+}  // namespace oort

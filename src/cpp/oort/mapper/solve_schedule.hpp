@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+namespace oort {
+
+/// When a graph that closures are added to is solved, and how much of it.
+///
+/// What surprises is solved at once; in a large graph by moving the newest nodes alone, which costs the same however
+/// large the map is. The rest waits until the graph has grown by a twentieth, so that the work of all solves together
+/// stays in proportion to the graph.
+class SolveSchedule {
+ public:
+  enum class Extent { kNothing, kNewest, kAll };
+
+  static constexpr std::uint64_t kNewestNodes = 1000;  ///< that are moved when a large graph is surprised
+
+  /// `large`: from more nodes on, what surprises moves the newest nodes alone.
+  explicit SolveSchedule(std::uint64_t large = kNewestNodes) : large_(large) {}
+
+  /// A closure was added, this far from where the graph expected it (squared Mahalanobis distance).
+  void add_closure(double surprise);
+
+  /// What to solve now. `size`: of the graph, in nodes; `progress`: how far the work that brings closures has come
+  /// (nodes while mapping, closures while merging).
+  Extent due(std::uint64_t size, std::uint64_t progress) const;
+
+  std::uint64_t pending() const { return pending_; }  ///< closures since the last solve
+  void solved_newest();
+  void solved_all(std::uint64_t progress);
+
+ private:
+  std::uint64_t large_;
+  std::uint64_t pending_ = 0;
+  bool surprised_ = false;
+  std::uint64_t progress_at_last_ = 0;
+};
+
+}  // namespace oort
