@@ -82,7 +82,7 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
             started = time.perf_counter()
             result = session.add_scan(mapped)
             watch.scan_seconds.append(time.perf_counter() - started)
-            if result is not None and result.status:
+            if result is not None and result.was_tracked:
                 scan_hits.append(result.hit_fraction)
         recorder.add(scan.stamp, (mapped or scan).odometry, result)
         times.append(scan.time)

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 
 #include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/matching/rejection.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -45,7 +45,7 @@ class LoopMatcher {
     Pose2 T_candidate_query;     ///< the best there is, believed or not
     Eigen::Matrix3d covariance;  ///< along the axes of the candidate
     double hit_fraction = 0.0;
-    std::string refusal;  ///< why it is not to be believed; empty when it is
+    Rejection rejection = Rejection::kNone;  ///< why it is not to be believed
   };
 
   virtual ~LoopMatcher() = default;

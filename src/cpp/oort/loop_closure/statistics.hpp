@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <map>
-#include <string>
+
+#include "oort/matching/rejection.hpp"
 
 namespace oort {
 
-/// What became of the attempts to close loops. Every attempt is counted once: accepted, or refused for one reason.
+/// What became of the attempts to close loops. Every attempt is counted once: accepted, or rejected.
 struct ClosureCounts {
   std::uint64_t tried = 0;
   std::uint64_t accepted = 0;
-  std::map<std::string, std::uint64_t> refused;  ///< by reason
+  RejectionCounts rejected;
 };
 
 /// What the last refinement did (refinement.hpp).
@@ -45,9 +45,9 @@ struct MapperStatistics {
   std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: carried by odometry
   std::uint64_t scans_matched = 0;
   std::uint64_t nodes = 0;
-  std::uint64_t odometry_links = 0;                     ///< nodes whose match was refused
-  std::map<std::string, std::uint64_t> match_refusals;  ///< of nodes, by reason
-  std::uint64_t contradictions = 0;                     ///< chains begun as odometry and scans disagreed
+  std::uint64_t odometry_links = 0;  ///< nodes whose match was rejected
+  RejectionCounts match_rejections;  ///< of nodes
+  std::uint64_t contradictions = 0;  ///< chains begun as odometry and scans disagreed
   TrackingCounts tracking;
   ClosureCounts loops;
   ClosureCounts docks;

@@ -172,7 +172,7 @@ void Mapper::track(LastScan& scan) {
   if (scan.tracked.restarted) fresh_local_map_ = true;
   T_odom_sensor_tracked_ = scan.T_odom_sensor;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
-  if (scan.tracked.usable) ++statistics_.scans_matched;
+  if (scan.tracked.usable()) ++statistics_.scans_matched;
 }
 
 void Mapper::carry(LastScan& scan) const {
@@ -242,10 +242,10 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
   if (match.contradicts_odometry && !fresh_local_map_) {
     return begin_contradicted_chain(scan, node, T_previous_node, match);
   }
-  if (fresh_local_map_) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
-  const bool believed = match.refusal.empty();
+  if (fresh_local_map_) match.rejection = Rejection::kRestarted;  // the anchor is on another map than the scan
+  const bool believed = match.rejection == Rejection::kNone;
   if (!believed || after_gap) {
-    Eigen::Matrix3d covariance = incremental_.odometry_covariance(T_previous_node, match.refusal);
+    Eigen::Matrix3d covariance = incremental_.odometry_covariance(T_previous_node, match.rejection);
     if (left_poor_local_map_) covariance += least_contradiction();
     if (fresh_local_map_) tracking_.hang_loosely(node.id, left_poor_local_map_);
     add_edge(previous.id, T_previous_node, covariance, ConstraintType::kOdometry);
@@ -255,7 +255,7 @@ Mapper::ChainStep Mapper::link_to_chain(LastScan& scan, Node& node) {
     node.pose = map_.graph.nodes[anchor_.node].pose * match.T_anchor_node;
   } else {
     ++statistics_.odometry_links;
-    ++statistics_.match_refusals[match.refusal];
+    ++statistics_.match_rejections[match.rejection];
     scan.missed = true;
     node.pose = previous.pose * T_previous_node;
   }
@@ -303,7 +303,8 @@ ScanResult Mapper::result(const LastScan& scan, ScanOutcome outcome) const {
   result.tracking = tracking_state_;
   result.outcome = outcome;
   result.hit_fraction = scan.tracked.hit_fraction;
-  result.status = scan.tracked.status;
+  result.was_tracked = scan.was_tracked;
+  result.rejection = scan.tracked.rejection;
   if (next_link_ == NextLink::kChain) {  // else nothing links the scan to any node
     result.node_id = map_.graph.nodes.back().id;
     result.T_node_sensor = between(chains_.local_pose(*result.node_id), scan.tracked.T_local_sensor);

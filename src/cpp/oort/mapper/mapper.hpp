@@ -34,7 +34,8 @@ struct ScanResult {
   std::optional<std::uint64_t> node_id;  ///< the node that the pose is relative to; none before the first node
   Pose2 T_node_sensor;
   double hit_fraction = 0.0;
-  std::string status;  ///< what the scan matcher said; empty if it was not asked
+  bool was_tracked = false;                      ///< whether the scan matcher was asked
+  Rejection rejection = Rejection::kNotMatched;  ///< of its match by itself
   TrackingState tracking = TrackingState::kTracking;
   bool tried_closures = false;  ///< whether the scan's turn brought work on loop closures
   bool solved = false;          ///< whether the graph was solved

@@ -27,7 +27,7 @@ constexpr int kMaxPoor = 8;
 
 // Wheels that slip, or a robot that is carried: its scans tell of a motion that odometry does not.
 bool Mapper::has_moved_unnoticed(const LastScan& scan) const {
-  if (next_link_ != NextLink::kChain || !scan.tracked.usable || !incremental_.knows_odometry()) return false;
+  if (next_link_ != NextLink::kChain || !scan.tracked.usable() || !incremental_.knows_odometry()) return false;
   const Pose2 T_sensor_base = inverse(T_base_sensor_);
   const Pose2 moved = between(chains_.local_pose(map_.graph.nodes.back().id) * T_sensor_base,
                               scan.tracked.T_local_sensor * T_sensor_base);
@@ -41,7 +41,7 @@ Eigen::Matrix3d Mapper::least_contradiction() {
 
 // Matches go on by chance after a robot was put down elsewhere. The scans of a good match hit by nine tenths and more.
 void Mapper::leave_poor_local_map(LastScan& scan) {
-  const bool poor = scan.tracked.usable && scan.tracked.hit_fraction < kPoorHits && incremental_.knows_odometry();
+  const bool poor = scan.tracked.usable() && scan.tracked.hit_fraction < kPoorHits && incremental_.knows_odometry();
   poor_in_a_row_ = poor ? poor_in_a_row_ + 1 : 0;
   if (poor_in_a_row_ < kMaxPoor) return;
   poor_in_a_row_ = 0;
@@ -75,7 +75,7 @@ Mapper::ChainStep Mapper::begin_contradicted_chain(LastScan& scan, Node& node, c
   incremental_.begin(T_local_previous * chosen);
   scan.tracked = incremental_.track(returns_of(scan.cloud), scan.cloud.time, Pose2{});
   scan.tracked.hit_fraction = hits;
-  scan.tracked.status = "contradicts odometry";
+  scan.tracked.rejection = Rejection::kContradictsOdometry;
   map_.incremental_results.push_back({node.id, node.id, scan.tracked.T_local_sensor, covariance, Pose2{}, hits});
   ++statistics_.contradictions;
   tracking_.hang_loosely(node.id, hits < kTellingHits);
