@@ -149,11 +149,11 @@ def queries(homes: Homes, row: str, seed: int, count: int) -> Iterator[dict[str,
             started = time.process_time()
             result = relocalizer.find([_placed(drive, index) for index in views[:length]])
             milliseconds.append(1e3 * (time.process_time() - started))
-            if result.status == "found":
+            if result.found:
                 break
         assert result is not None
-        figures: dict[str, Any] = {"seed": seed, "first": first, "status": result.status, "ms": milliseconds}
-        if result.status == "found" and result.best is not None:
+        figures: dict[str, Any] = {"seed": seed, "first": first, "rejection": result.rejection, "ms": milliseconds}
+        if result.found and result.best is not None:
             T_sensor = compose(drive.T_map_base[views[length - 1]], drive.T_base_sensor)
             figures["support"] = result.best.support
             figures["off"] = _off(truth.on_map(T_sensor), result.best.T_map_sensor)
@@ -162,12 +162,12 @@ def queries(homes: Homes, row: str, seed: int, count: int) -> Iterator[dict[str,
 
 
 def summarise_queries(found: list[dict[str, Any]], none_is_right: bool) -> list[str]:
-    answers = [q for q in found if q["status"] == "found"]
+    answers = [q for q in found if q["rejection"] is None]
     wrong = [
         sum(none_is_right or q[key][0] > WRONG or q[key][1] > WRONG_HEADING for q in answers)
         for key in ("off", "off_truth")
     ]
-    refused = Counter(q["status"] for q in found if q["status"] != "found")
+    refused = Counter(q["rejection"] for q in found if q["rejection"] is not None)
     milliseconds = [ms for q in found for ms in q["ms"]]
     off = [q["off"][0] for q in answers]
     return [

@@ -72,10 +72,10 @@ def replay(
         result = session.add_scan(scan)
         watch.scan_seconds.append(time.thread_time() - started)
         recorder.add(scan.stamp, scan.odometry, result)
-        closes.append(result is not None and (result.tried_closures or result.solved))
+        closes.append(result is not None and result.corrected)
         states.append("" if result is None else result.tracking)
         before = solved
-        if result is not None and result.solved:
+        if result is not None and result.corrected:
             solved = session.mapper.work_seconds["solving"]
         solving.append(solved - before)
         then.append(session.mapper.sensor_pose if session.mapper.has_pose else (math.nan,) * 3)

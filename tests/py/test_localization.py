@@ -67,7 +67,7 @@ def test_a_pose_is_found_without_a_guess(home: Home) -> None:
     found = 0
     for last in range(100, len(scans), 150):
         result = find_pose(home.map, Parameters(), scans[last - 50 : last + 1], recording.sensor_on_base)
-        if result.status != "found":
+        if not result.found:
             continue
         assert result.best is not None
         truth = compose(home.later.T_map_base[last], home.later.T_base_sensor)
@@ -80,7 +80,7 @@ def test_a_pose_is_found_without_a_guess(home: Home) -> None:
 
 def test_what_is_not_on_the_map_is_refused(home: Home) -> None:
     scans = [room_scan(-1.0 + 0.25 * step, 0.0, 0.0, 100.0 + step) for step in range(5)]
-    assert find_pose(home.map, Parameters(), scans).status != "found"
+    assert not find_pose(home.map, Parameters(), scans).found
     with pytest.raises(InputError, match="where on the map it begins was not found"):
         find_start(home.map, Parameters(), Recording("room", "made up", (0.0, 0.0, 0.0), 5, (), lambda: iter(scans)))
 

@@ -69,9 +69,12 @@ void bind_relocalizer(py::module_& m) {
           "counts", [](const Hypothesis& h) { return dict_of(h.support); }, "What the support is made of.");
   py::class_<Relocalization>(m, "Relocalization", "What a search without a guess found.")
       .def_property_readonly(
-          "status", [](const Relocalization& r) { return std::string(to_string(r.status)); },
-          "\"found\", or why not: \"too_few_points\", \"no_match\", \"low_support\", \"ambiguous\", \"imprecise\".")
-      .def_readonly("best", &Relocalization::best, "The answer, or what was refused; None if nothing fits.")
+          "found", [](const Relocalization& r) { return r.found(); }, "Whether there is an answer.")
+      .def_property_readonly(
+          "rejection", [](const Relocalization& r) { return text_of(r.rejection); },
+          "Why there is none, for people: \"too_few_points\", \"no_match\", \"low_support\", \"ambiguous\" or "
+          "\"imprecise\"; None if there is.")
+      .def_readonly("best", &Relocalization::best, "The answer, or what was rejected; None if nothing fits.")
       .def_readonly("second", &Relocalization::second, "The next place apart from it, or None.");
   py::class_<Relocalizer>(m, "Relocalizer", "Finds the robot on a map without a guess. Thread-safe.")
       .def(py::init([](const std::shared_ptr<ReferenceMap>& map, const Parameters& parameters) {
@@ -88,8 +91,8 @@ py::dict dict_of(const LocalizationStatistics& s) {
   dict["matched"] = s.matched;
   dict["searches"] = s.searches;
   dict["jumps"] = s.jumps;
-  dict["match_refusals"] = py::cast(s.match_refusals);
-  dict["search_refusals"] = py::cast(s.search_refusals);
+  dict["match_refusals"] = dict_of(s.match_rejections);
+  dict["search_refusals"] = dict_of(s.search_rejections);
   return dict;
 }
 

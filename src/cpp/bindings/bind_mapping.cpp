@@ -81,7 +81,8 @@ py::dict dict_of(const WorkSeconds& seconds) {
 py::list list_of(const ClosureLog& log) {
   py::list list;
   for (const ClosureAttempt& a : log.attempts()) {
-    list.append(py::make_tuple(a.query, a.candidate, a.reason, tuple_of(a.T_candidate_query), a.hit_fraction));
+    list.append(
+        py::make_tuple(a.query, a.candidate, text_of(a.rejection), tuple_of(a.T_candidate_query), a.hit_fraction));
   }
   return list;
 }
@@ -93,7 +94,7 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["scans_matched"] = statistics.chain.scans_matched;
   dict["nodes"] = statistics.chain.nodes;
   dict["odometry_links"] = statistics.chain.odometry_links;
-  dict["match_refusals"] = py::cast(statistics.chain.match_refusals);
+  dict["match_refusals"] = dict_of(statistics.chain.match_rejections);
   dict["contradictions"] = statistics.chain.contradictions;
   dict["tracking"] = dict_of(statistics.tracking);
   dict["loops"] = dict_of(statistics.global.loops);
@@ -129,7 +130,10 @@ void bind_scan_result(py::module_& m) {
           "T_node_sensor", [](const ScanResult& r) { return tuple_of(r.T_node_sensor); },
           "The sensor's pose (x, y, theta) seen from the node.")
       .def_readonly("hit_fraction", &ScanResult::hit_fraction, "Share of the returns that hit the local map.")
-      .def_readonly("status", &ScanResult::status, "What the scan matcher said; empty if it was not asked.")
+      .def_readonly("was_tracked", &ScanResult::was_tracked, "Whether the scan matcher was asked.")
+      .def_property_readonly(
+          "rejection", [](const ScanResult& r) { return text_of(r.rejection); },
+          "Why its match is of no use, for people; None if it is.")
       .def_property_readonly(
           "tracking", [](const ScanResult& r) { return name_of(r.tracking); },
           "How well the sensor's place is known: \"tracking\", \"uncertain\" or \"lost\".")
@@ -146,11 +150,22 @@ void bind_scan_result(py::module_& m) {
 
 }  // namespace
 
+py::dict dict_of(const RejectionCounts& counts) {
+  py::dict dict;
+  for (const auto& [rejection, count] : counts.by_text()) dict[py::str(std::string(to_string(rejection)))] = count;
+  return dict;
+}
+
+std::optional<std::string> text_of(Rejection rejection) {
+  if (rejection == Rejection::kNone) return std::nullopt;
+  return std::string(to_string(rejection));
+}
+
 py::dict dict_of(const ClosureCounts& counts) {
   py::dict dict;
   dict["tried"] = counts.tried;
   dict["accepted"] = counts.accepted;
-  dict["refused"] = py::cast(counts.refused);
+  dict["refused"] = dict_of(counts.rejected);
   return dict;
 }
 
@@ -238,7 +253,7 @@ void bind_mapping(py::module_& m) {
            "Keeps the latest attempts to close loops, so many at most.")
       .def_property_readonly(
           "closure_attempts", [](const Mapper& mapper) { return list_of(mapper.closure_attempts()); },
-          "(query node, candidate node, reason of the refusal or \"\", T_candidate_query, hit fraction) of each kept.");
+          "(query node, candidate node, why it was rejected or None, T_candidate_query, hit fraction) of each kept.");
 }
 
 }  // namespace oort

@@ -38,7 +38,7 @@ void bind_merging(py::module_& m) {
           "Where the map was found.")
       .def_property_readonly(
           "closures", [](const Merged& merged) { return dict_of(merged.across); },
-          "From the second map to the first: tried, accepted, and refused by reason.")
+          "From the second map to the first: tried, accepted, and rejected by reason.")
       .def_readonly("closures_kept", &Merged::across_kept, "Accepted ones that are on at the last solution.")
       .def_property_readonly(
           "dropped", [](const Merged& merged) { return list_of(merged.dropped); },

@@ -11,6 +11,7 @@
 #include "oort/geometry/pose2.hpp"
 #include "oort/geometry/sweep.hpp"
 #include "oort/loop_closure/statistics.hpp"
+#include "oort/matching/rejection.hpp"
 
 namespace oort {
 
@@ -24,7 +25,13 @@ inline PoseTuple tuple_of(const Pose2& p) {
   return {p.x, p.y, p.theta};
 }
 
-/// Tried, accepted, and refused by reason.
+/// The counts by their texts, in their order.
+pybind11::dict dict_of(const RejectionCounts& counts);
+
+/// The text of a verdict; none of what was accepted.
+std::optional<std::string> text_of(Rejection rejection);
+
+/// Tried, accepted, and rejected by reason.
 pybind11::dict dict_of(const ClosureCounts& counts);
 
 /// A sweep as Python has it: where the base was at the first beam and at the last.

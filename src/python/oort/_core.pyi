@@ -284,8 +284,11 @@ class ScanResult:
     def hit_fraction(self) -> float:
         """Share of the returns that hit the local map."""
     @property
-    def status(self) -> str:
-        """What the scan matcher said; empty if it was not asked."""
+    def was_tracked(self) -> bool:
+        """Whether the scan matcher was asked."""
+    @property
+    def rejection(self) -> str | None:
+        """Why its match is of no use, for people; None if it is."""
     @property
     def tracking(self) -> str:
         """How well the sensor's place is known: tracking, uncertain or lost."""
@@ -362,8 +365,8 @@ class Mapper:
     def keep_closure_attempts(self, capacity: int) -> None:
         """Keeps the latest attempts to close loops, so many at most."""
     @property
-    def closure_attempts(self) -> list[tuple[int, int, str, _Pose, float]]:
-        """(query node, candidate node, reason of the refusal or "", T_candidate_query, hit fraction) of each kept."""
+    def closure_attempts(self) -> list[tuple[int, int, str | None, _Pose, float]]:
+        """(query node, candidate node, why it was rejected or None, T_candidate_query, hit fraction) of each kept."""
 
 class PlacedScan:
     """A scan and where odometry saw it."""
@@ -407,11 +410,15 @@ class Relocalization:
     """What a search without a guess found."""
 
     @property
-    def status(self) -> str:
-        """found, or why not: too_few_points, no_match, low_support, ambiguous, imprecise."""
+    def found(self) -> bool:
+        """Whether there is an answer."""
+    @property
+    def rejection(self) -> str | None:
+        """Why there is none, for people: too_few_points, no_match, low_support, ambiguous or imprecise; None if there
+        is."""
     @property
     def best(self) -> Hypothesis | None:
-        """The answer, or what was refused; None if nothing fits."""
+        """The answer, or what was rejected; None if nothing fits."""
     @property
     def second(self) -> Hypothesis | None:
         """The next place apart from it, or None."""
@@ -488,7 +495,7 @@ class Merged:
         """Where the map was found."""
     @property
     def closures(self) -> dict[str, Any]:
-        """From the second map to the first: tried, accepted, and refused by reason."""
+        """From the second map to the first: tried, accepted, and rejected by reason."""
     @property
     def closures_kept(self) -> int:
         """Accepted ones that are on at the last solution."""

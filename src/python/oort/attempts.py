@@ -26,7 +26,7 @@ class Attempt:
     query: int
     candidate: int
     verdict: str
-    """accepted; contradicted: accepted, but the last solution leaves it out; else the reason why it was refused"""
+    """accepted; contradicted: accepted, but the last solution leaves it out; else why it was rejected"""
     T_candidate_query: Pose
     """where the match put the query; where the graph had it if there was no match"""
     hit_fraction: float
@@ -34,16 +34,16 @@ class Attempt:
     """of an accepted one at the last solution"""
 
 
-def judge_attempts(told: Sequence[tuple[int, int, str, Pose, float]], map_: Map) -> list[Attempt]:
+def judge_attempts(told: Sequence[tuple[int, int, str | None, Pose, float]], map_: Map) -> list[Attempt]:
     """The attempts of ``Mapper.closure_attempts`` with what the map's solution says of those that were accepted."""
     edges = map_.switchable_edges
     ends = zip(edges["i"].tolist(), edges["j"].tolist(), strict=True)
     switches = dict(zip(ends, edges["switch"].tolist(), strict=True))
     attempts = []
-    for query, candidate, reason, pose, hits in told:
-        switch = None if reason else switches[query, candidate]
+    for query, candidate, rejection, pose, hits in told:
+        switch = None if rejection is not None else switches[query, candidate]
         accepted = CONTRADICTED if switch is not None and switch < _ON else ACCEPTED
-        attempts.append(Attempt(query, candidate, reason or accepted, pose, hits, switch))
+        attempts.append(Attempt(query, candidate, rejection or accepted, pose, hits, switch))
     return attempts
 
 

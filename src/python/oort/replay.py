@@ -79,10 +79,12 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
         result = None
         mapped = schedule.take(scan)
         if mapped is not None:
-            started = time.perf_counter()
+            started, waited = time.perf_counter(), session.mapper.work_seconds["waiting"]
             result = session.add_scan(mapped)
-            watch.scan_seconds.append(time.perf_counter() - started)
-            if result is not None and result.status:
+            waited = session.mapper.work_seconds["waiting"] - waited
+            watch.scan_seconds.append(time.perf_counter() - started - waited)
+            watch.waited_seconds.append(waited)
+            if result is not None and result.was_tracked:
                 scan_hits.append(result.hit_fraction)
         recorder.add(scan.stamp, (mapped or scan).odometry, result)
         times.append(scan.time)

@@ -20,12 +20,15 @@ class Stopwatch:
     wall_start: float = field(default_factory=time.perf_counter)
     cpu_start: float = field(default_factory=time.process_time)
     scan_seconds: list[float] = field(default_factory=list)
+    """of local SLAM, without what it waited for global SLAM"""
+    waited_seconds: list[float] = field(default_factory=list)
 
     def figures(self, recorded_seconds: float, work_seconds: Mapping[str, float] | None = None) -> dict[str, Any]:
         """Cost so far: of each scan, of the whole, by kind of work if given, and against the recording's length."""
         wall = time.perf_counter() - self.wall_start
         milliseconds = 1e3 * np.array(self.scan_seconds or [0.0])
-        by_work = {work: round(seconds, 3) for work, seconds in (work_seconds or {}).items()}
+        by_work = {work: round(seconds, 3) for work, seconds in (work_seconds or {}).items() if work != "waiting"}
+        waited = np.array(self.waited_seconds or [0.0])
         p50, p95, p99 = np.percentile(milliseconds, [50, 95, 99])
         return {
             "ms_per_scan": {
@@ -34,6 +37,10 @@ class Stopwatch:
                 "p95": round(float(p95), 4),
                 "p99": round(float(p99), 4),
                 "max": round(float(milliseconds.max()), 4),
+            },
+            "waited": {
+                "seconds": round(float(waited.sum()), 3),
+                "max_ms": round(1e3 * float(waited.max()), 3),
             },
             "wall_seconds": round(wall, 3),
             "cpu_seconds": round(time.process_time() - self.cpu_start, 3),
@@ -85,6 +92,7 @@ def format_table(report: Mapping[str, Any]) -> str:
         ),
         ("map", f"{report['map']['width']} x {report['map']['height']} cells of {report['map']['resolution']} m"),
         ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),
+        ("waited", "{seconds:.2f} s in all for global SLAM, at most {max_ms:.0f} ms".format(**timings["waited"])),
         ("times real time", f"{timings['times_real_time']:.0f}"),
         ("CPU seconds", f"{timings['cpu_seconds']:.2f}{_work(timings['cpu_seconds_by_work'])}"),
         ("peak memory", f"{timings['peak_memory_mb']:.0f} MB"),

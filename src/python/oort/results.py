@@ -71,8 +71,9 @@ def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
         )
         if drive.keep_attempts:
             _write_attempts(out, drive.session.mapper, map_, grid)
-    refused = [hits for _, _, reason, _, hits in drive.session.mapper.closure_attempts if reason and hits > 0.0]
-    histograms = make_histograms(map_, drive.scan_hits, refused)
+    attempts = drive.session.mapper.closure_attempts
+    rejected = [hits for _, _, rejection, _, hits in attempts if rejection is not None and hits > 0.0]
+    histograms = make_histograms(map_, drive.scan_hits, rejected)
     if drawn := panels(histograms):
         write_chart(out / "histograms.png", drawn)
     report = make_report(

@@ -35,7 +35,7 @@ class GridTrackerTest : public ::testing::Test {
     for (std::size_t k = 0; k <= 80; k += stride) {
       const Pose2 step = k == 0 ? Pose2{} : between(odometry[k - stride], odometry[k]);
       const TrackedScan tracked = tracker.track(seen(truth[k], sensor), 0.1 * static_cast<double>(k), step, {});
-      EXPECT_EQ(tracked.usable, k > 0) << k << ": " << tracked.status;
+      EXPECT_EQ(tracked.usable(), k > 0) << k << ": " << to_string(tracked.rejection);
       worst = std::max(worst, between(between(truth[0], truth[k]), tracked.T_local_sensor).translation().norm());
     }
     return worst;
@@ -123,12 +123,12 @@ TEST_F(GridTrackerTest, BeginsAnewWhereNothingFits) {
   int unusable = 0;
   while (!tracked.restarted && unusable < 20) {
     tracked = tracker.track(clutter, 0.0, {}, {});
-    EXPECT_FALSE(tracked.usable);
+    EXPECT_FALSE(tracked.usable());
     ++unusable;
   }
   EXPECT_EQ(unusable, 5);
   EXPECT_LT(between(expected, tracked.T_local_sensor).translation().norm(), 1.0);
-  EXPECT_TRUE(tracker.track(clutter, 0.0, {}, {}).usable) << "on the new map it fits itself";
+  EXPECT_TRUE(tracker.track(clutter, 0.0, {}, {}).usable()) << "on the new map it fits itself";
 }
 
 TEST_F(GridTrackerTest, WhatIsOverruledJoinsNoMap) {
@@ -185,51 +185,50 @@ TEST(LocalGrids, HoldBetweenHalfAHistoryAndAWholeOne) {
 /// The gates: odometry minus match for x, unlike FRSM's.
 class GatesTest : public GridTrackerTest {
  protected:
-  std::string verdict(const Pose2& T_odometry_match, double hits = 0.8) const {
+  Rejection verdict(const Pose2& T_odometry_match, double hits = 0.8) const {
     TrackedScan node;
-    node.usable = true;
+    node.rejection = Rejection::kNone;
     node.T_local_sensor = T_odometry_match;
     node.hit_fraction = hits;
-    return match_refusal(builder, node, {}, {});
+    return match_rejection(builder, node, {}, {});
   }
 };
 
 TEST_F(GatesTest, DocumentedOnesOfTheFirstStage) {
   p = testing::documented_parameters().incremental_graph_builder.cartographer_matcher;
-  EXPECT_EQ(verdict({0.04, 0.02, 0.09}), "");
-  EXPECT_EQ(verdict({-0.051, 0.0, 0.0}), "x") << "odometry is 5.1 cm ahead of the match";
-  EXPECT_EQ(verdict({0.051, 0.0, 0.0}), "distance") << "the match is ahead: only the distance is too large";
+  EXPECT_EQ(verdict({0.04, 0.02, 0.09}), Rejection::kNone);
+  EXPECT_EQ(verdict({-0.051, 0.0, 0.0}), Rejection::kX) << "odometry is 5.1 cm ahead of the match";
+  EXPECT_EQ(verdict({0.051, 0.0, 0.0}), Rejection::kDistance) << "the match is ahead: only the distance is too large";
   p.sm_dist_accept_threshold = 1.0;
-  EXPECT_EQ(verdict({0.119, 0.0, 0.0}), "");
-  EXPECT_EQ(verdict({0.121, 0.0, 0.0}), "x");
-  EXPECT_EQ(verdict({-0.049, 0.0, 0.0}), "");
-  EXPECT_EQ(verdict({0.0, 0.109, 0.0}), "");
-  EXPECT_EQ(verdict({0.0, -0.111, 0.0}), "y");
-  EXPECT_EQ(verdict({0.0, 0.0, -0.101}), "theta");
+  EXPECT_EQ(verdict({0.119, 0.0, 0.0}), Rejection::kNone);
+  EXPECT_EQ(verdict({0.121, 0.0, 0.0}), Rejection::kX);
+  EXPECT_EQ(verdict({-0.049, 0.0, 0.0}), Rejection::kNone);
+  EXPECT_EQ(verdict({0.0, 0.109, 0.0}), Rejection::kNone);
+  EXPECT_EQ(verdict({0.0, -0.111, 0.0}), Rejection::kY);
+  EXPECT_EQ(verdict({0.0, 0.0, -0.101}), Rejection::kTheta);
   p.min_sm_accept_score = 0.5;
-  EXPECT_EQ(verdict({}, 0.49), "score");
+  EXPECT_EQ(verdict({}, 0.49), Rejection::kScore);
 }
 
 TEST_F(GatesTest, TheSecondStageHasItsOwn) {
   p = testing::documented_parameters().incremental_graph_builder.cartographer_matcher;
   TrackedScan node;
-  node.usable = true;
+  node.rejection = Rejection::kNone;
   node.hit_fraction = 0.7;
   node.first_stage = CoarseMatch{{0.03, 0.0, 0.0}, 0.8};
   const auto verdict = [&](const Pose2& T_odometry_match) {
     node.T_local_sensor = T_odometry_match;
-    return match_refusal(builder, node, {}, {});
+    return match_rejection(builder, node, {}, {});
   };
-  EXPECT_EQ(verdict({0.05, 0.0, 0.06}), "");
-  EXPECT_EQ(verdict({0.052, 0.0, 0.0}), "second_stage_distance");
-  EXPECT_EQ(verdict({0.0, 0.0, 0.071}), "second_stage_theta");
+  EXPECT_EQ(verdict({0.05, 0.0, 0.06}), Rejection::kNone);
+  EXPECT_EQ(verdict({0.052, 0.0, 0.0}), Rejection::kSecondStageDistance);
+  EXPECT_EQ(verdict({0.0, 0.0, 0.071}), Rejection::kSecondStageTheta);
   p.second_stage_matcher.min_sm_accept_score = 0.75;
-  EXPECT_EQ(verdict({}), "second_stage_score");
+  EXPECT_EQ(verdict({}), Rejection::kSecondStageScore);
   node.first_stage->T_local_sensor.x = 0.06;
-  EXPECT_EQ(verdict({}), "distance") << "the first stage's come first";
-  node.usable = false;
-  node.status = "low_score";
-  EXPECT_EQ(verdict({}), "low_score");
+  EXPECT_EQ(verdict({}), Rejection::kDistance) << "the first stage's come first";
+  node.rejection = Rejection::kLowScore;
+  EXPECT_EQ(verdict({}), Rejection::kLowScore);
 }
 
 }  // namespace

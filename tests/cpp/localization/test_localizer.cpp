@@ -103,7 +103,7 @@ TEST(Localizer, WhatWasSeenBeforeOutweighsScansThatFitSomewhereElse) {
     localizer.add_scan(see(is_blind ? testing::World{} : make_room(), seen * kMount, 0.0), truth[k]);
     if (k == 79) EXPECT_GT(std::sqrt(localizer.covariance()(0, 0)), 0.08);
   }
-  EXPECT_GT(localizer.statistics().match_refusals.at("contradicts earlier views"), 0U);
+  EXPECT_GT(localizer.statistics().match_rejections[Rejection::kContradictsEarlierViews], 0U);
   EXPECT_LT(between(truth[89] * kMount, *localizer.T_map_sensor()).translation().norm(), 0.05);
 }
 

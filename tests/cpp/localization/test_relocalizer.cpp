@@ -26,7 +26,7 @@ TEST(Relocalizer, FindsARobotAnywhereInARoom) {
   const Relocalizer relocalizer_of_room = relocalizer(reference_of(make_room(), views_of_room()));
   for (const Pose2& place : kPlaces) {
     const Relocalization found = relocalizer_of_room.find({placed(make_room(), place)});
-    ASSERT_EQ(found.status, RelocalizationStatus::kFound) << place.x << " " << place.y;
+    ASSERT_EQ(found.rejection, Rejection::kNone) << place.x << " " << place.y;
     const Pose2 error = between(place, found.best->T_map_sensor);
     EXPECT_LT(error.translation().norm(), 0.03);
     EXPECT_LT(std::abs(error.theta), 0.015);
@@ -41,7 +41,7 @@ TEST(Relocalizer, JoinsScansByOdometryAndAnswersForTheNewest) {
   for (const double x : {-1.2, -1.0, -0.8}) scans.push_back(placed(make_room(), {x, 1.7, 0.2}, T_odom_map));
   for (PlacedScan& scan : scans) scan.cloud.id = 0;
   const Relocalization found = relocalizer_of_room.find(scans);
-  ASSERT_EQ(found.status, RelocalizationStatus::kFound);
+  ASSERT_EQ(found.rejection, Rejection::kNone);
   EXPECT_LT(between({-0.8, 1.7, 0.2}, found.best->T_map_sensor).translation().norm(), 0.03);
 }
 
@@ -49,7 +49,7 @@ TEST(Relocalizer, LooksAtNoPlaceThatScoresLess) {
   Parameters parameters;
   parameters.loop_closure_graph_builder.branch_and_bound_matcher.global_localization_min_score = 0.999;
   const Relocalizer strict(reference_of(make_room(), views_of_room()), parameters);
-  EXPECT_EQ(strict.find({placed(make_room(), {-0.8, 1.7, 0.2})}).status, RelocalizationStatus::kNoMatch);
+  EXPECT_EQ(strict.find({placed(make_room(), {-0.8, 1.7, 0.2})}).rejection, Rejection::kNoMatch);
 }
 
 TEST(Relocalizer, RefusesToChooseBetweenTwoRoomsThatLookAlike) {
@@ -60,7 +60,7 @@ TEST(Relocalizer, RefusesToChooseBetweenTwoRoomsThatLookAlike) {
   const Relocalizer relocalizer_of_both = relocalizer(reference_of(world, views));
   for (const Pose2& place : kPlaces) {
     const Relocalization found = relocalizer_of_both.find({placed(world, T_first_second * place)});
-    EXPECT_EQ(found.status, RelocalizationStatus::kAmbiguous);
+    EXPECT_EQ(found.rejection, Rejection::kAmbiguous);
     ASSERT_TRUE(found.best && found.second);
     EXPECT_GT(between(found.best->T_map_sensor, found.second->T_map_sensor).translation().norm(), 5.0);
   }
@@ -72,7 +72,7 @@ TEST(Relocalizer, RefusesPlacesThatAreNotOnTheMap) {
   testing::add_outline({{-1.0, -4.0}, {2.5, -4.5}, {3.0, 1.0}, {0.4, 1.6}, {-1.4, 0.4}}, other);
   testing::add_outline({{0.9, -1.5}, {1.5, -1.9}, {1.9, -1.1}}, other);
   for (const Pose2& place : {Pose2{0.2, -2.0, 0.0}, Pose2{0.3, 0.3, -1.5}, Pose2{1.4, -3.2, 2.0}}) {
-    EXPECT_NE(relocalizer_of_room.find({placed(other, place)}).status, RelocalizationStatus::kFound);
+    EXPECT_NE(relocalizer_of_room.find({placed(other, place)}).rejection, Rejection::kNone);
   }
 }
 
@@ -81,7 +81,7 @@ TEST(Relocalizer, AWallIsNotTakenForItsOtherSide) {
   const Relocalizer relocalizer_of_room = relocalizer(reference_of(make_room(), views_of_room()));
   for (const Pose2& place : {Pose2{3.6, -2.4, 2.2}, Pose2{-3.8, 0.0, 0.1}, Pose2{1.0, 4.2, -1.6}}) {
     const Relocalization found = relocalizer_of_room.find({placed(make_room(), place)});
-    EXPECT_NE(found.status, RelocalizationStatus::kFound) << to_string(found.status);
+    EXPECT_NE(found.rejection, Rejection::kNone) << to_string(found.rejection);
   }
 }
 
@@ -90,14 +90,14 @@ TEST(Relocalizer, AStraightWallTellsNotWhere) {
   std::vector<Pose2> views;
   for (double x = -6.0; x <= 6.0; x += 0.25) views.push_back({x, 0.0, 0.0});
   const Relocalization found = relocalizer(reference_of(corridor, views)).find({placed(corridor, {1.0, 0.1, 0.05})});
-  EXPECT_TRUE(found.status == RelocalizationStatus::kAmbiguous || found.status == RelocalizationStatus::kImprecise)
-      << to_string(found.status);
+  EXPECT_TRUE(found.rejection == Rejection::kAmbiguous || found.rejection == Rejection::kImprecise)
+      << to_string(found.rejection);
 }
 
 TEST(Relocalizer, SaysWhenThereIsTooLittleToSee) {
   const auto map = reference_of(make_room(), views_of_room());
   const testing::World pole = {{{1.0, -0.1}, {1.0, 0.1}}};
-  EXPECT_EQ(relocalizer(map).find({placed(pole, {})}).status, RelocalizationStatus::kTooFewPoints);
+  EXPECT_EQ(relocalizer(map).find({placed(pole, {})}).rejection, Rejection::kSearchTooFewPoints);
   EXPECT_THROW(relocalizer(map).find({}), InputError);
   EXPECT_THROW(relocalizer(map).find({placed(make_room(), {NAN, 0.0, 0.0})}), InputError);
 }

@@ -96,10 +96,11 @@ class DockTest : public ::testing::Test {
     counts = {};
     return DockGraphBuilder(parameters).find(map, chains, query, counts);
   }
-  std::string verdict() {
-    if (find()) return "";
-    EXPECT_EQ(counts.refused.size(), 1u);
-    return counts.refused.begin()->first;
+  Rejection verdict() {
+    if (find()) return Rejection::kNone;
+    const auto rejected = counts.rejected.by_text();
+    EXPECT_EQ(rejected.size(), 1u);
+    return rejected.front().first;
   }
 
   const Pose2 kDocked{0.05, -0.03, 0.06};
@@ -125,15 +126,15 @@ TEST_F(DockTest, IsMeasuredWhereverTheGraphPutsTheRobot) {
 TEST_F(DockTest, HitsAndDistanceAreLimited) {
   const Closure closure = find().value();
   p.dock_match_min_hit_pct = closure.hit_fraction;
-  EXPECT_EQ(verdict(), "");
+  EXPECT_EQ(verdict(), Rejection::kNone);
   p.dock_match_min_hit_pct = closure.hit_fraction + 1e-9;
-  EXPECT_EQ(verdict(), "hits");
+  EXPECT_EQ(verdict(), Rejection::kHits);
   p.dock_match_min_hit_pct = 0.0;
   const double distance = closure.T_from_to.translation().norm();
   p.dock_match_max_dist = distance + 1e-9;
-  EXPECT_EQ(verdict(), "");
+  EXPECT_EQ(verdict(), Rejection::kNone);
   p.dock_match_max_dist = distance - 1e-9;
-  EXPECT_EQ(verdict(), "distance");
+  EXPECT_EQ(verdict(), Rejection::kDistance);
 }
 
 TEST_F(DockTest, DistanceIsFromTheDockNotFromItsNode) {
@@ -154,12 +155,12 @@ TEST_F(DockTest, WhereTheLastNodesAreBentFewerAreMatched) {
     chains.add(k == 0 || k == 12, true, k < 12 ? place : T_bent * place);
   }
   p.dock_match_least_size = p.dock_match_submap_size;
-  EXPECT_EQ(verdict(), "hits");
+  EXPECT_EQ(verdict(), Rejection::kHits);
   p.dock_match_least_size = 1;
   const std::optional<Closure> closure = find();
   ASSERT_TRUE(closure);
   EXPECT_EQ(counts.tried, 1u);
-  EXPECT_TRUE(counts.refused.empty());
+  EXPECT_EQ(counts.rejected.total(), 0u);
   EXPECT_NEAR(closure->T_from_to.x, kDocked.x, 0.01);
   EXPECT_NEAR(closure->T_from_to.y, kDocked.y, 0.01);
   EXPECT_NEAR(closure->T_from_to.theta, kDocked.theta, 0.01);
@@ -194,7 +195,7 @@ TEST_F(DockTest, ThatOneNodeIsAllThereIsMakesItNoBetter) {
   map.clouds.set(query, seen);
   EXPECT_TRUE(find());  // as documented
   p.dock_match_least_size = 1;
-  EXPECT_EQ(verdict(), "hits");
+  EXPECT_EQ(verdict(), Rejection::kHits);
 }
 
 TEST_F(DockTest, OnlyWhatWasMatchedIsFirm) {
@@ -245,13 +246,13 @@ TEST_F(DockTest, WhereNothingIsSeenTheContactsCount) {
 
 TEST_F(DockTest, TheDocksOwnNodeIsNoClosure) {
   query = 0;
-  EXPECT_EQ(verdict(), "same_node");
+  EXPECT_EQ(verdict(), Rejection::kSameNode);
   query = 1;  // all that was seen is the query's own submap
   chains = {};
   map.graph.nodes.resize(2);
   chains.add(true, true, {});
   chains.add(false, true, {0.2, 0.0, 0.0});
-  EXPECT_EQ(verdict(), "no_reference");
+  EXPECT_EQ(verdict(), Rejection::kNoReference);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class GridLoopTest : public ::testing::Test {
 
 TEST_F(GridLoopTest, FindsTheQueryWhereItIs) {
   const LoopMatcher::Found found = find({1.0, 0.4, {}});
-  ASSERT_EQ(found.refusal, "");
+  ASSERT_EQ(found.rejection, Rejection::kNone);
   EXPECT_LT(between(offset, found.T_candidate_query).translation().norm(), 0.05) << "a cell";
   EXPECT_NEAR(found.T_candidate_query.theta, offset.theta, 0.01);
   EXPECT_GT(found.hit_fraction, 0.7);
@@ -66,15 +66,15 @@ TEST_F(GridLoopTest, LeavesOutWhatIsFartherThanItsReach) {
   };
   EXPECT_LT(cells(1.0), cells(100.0));
   scale.reach = 0.0;
-  EXPECT_EQ(find({1.0, 0.4, {}}).refusal, "empty_scan");
+  EXPECT_EQ(find({1.0, 0.4, {}}).rejection, Rejection::kGridEmptyScan);
 }
 
 TEST_F(GridLoopTest, RefusesWithAReason) {
-  EXPECT_EQ(find({0.1, 0.05, {}}).refusal, "low_score") << "it is not within the window";
+  EXPECT_EQ(find({0.1, 0.05, {}}).rejection, Rejection::kLowScore) << "it is not within the window";
   p.min_score = 0.89;
-  EXPECT_EQ(find({1.0, 0.4, {}}).refusal, "low_score");
+  EXPECT_EQ(find({1.0, 0.4, {}}).rejection, Rejection::kLowScore);
   p.submap_min_neighborhood_size = 15;
-  EXPECT_EQ(find({1.0, 0.4, {}}).refusal, "small_submap");
+  EXPECT_EQ(find({1.0, 0.4, {}}).rejection, Rejection::kSmallSubmap);
 }
 
 TEST_F(GridLoopTest, TheBuilderUsesItWithItsWindowAndFilter) {
@@ -93,7 +93,7 @@ TEST_F(GridLoopTest, TheBuilderUsesItWithItsWindowAndFilter) {
   EXPECT_EQ(closures().size(), 1u);
   p.match_filter.match_max_dist = p.match_filter.match_max_dist_high = 0.3;
   EXPECT_TRUE(closures().empty());
-  EXPECT_EQ(counts.refused["distance"], 1u);
+  EXPECT_EQ(counts.rejected[Rejection::kDistance], 1u);
   // Farther than match_max_dist the higher thresholds count, by the direction that the query looks in.
   MatchFilterParameters& filter = p.match_filter;
   filter.match_max_dist_high = 2.0;
@@ -104,7 +104,7 @@ TEST_F(GridLoopTest, TheBuilderUsesItWithItsWindowAndFilter) {
     filter.match_hitpct_threshold_high = opposite ? 0.0 : 1.0;
     filter.match_hitpct_threshold_high_opposite_dir = opposite ? 1.0 : 0.0;
     EXPECT_TRUE(closures().empty());
-    EXPECT_EQ(counts.refused["hits"], 1u);
+    EXPECT_EQ(counts.rejected[Rejection::kHits], 1u);
   }
   // And nearer the others.
   filter.match_max_dist = 2.0;
@@ -114,13 +114,13 @@ TEST_F(GridLoopTest, TheBuilderUsesItWithItsWindowAndFilter) {
     filter.match_hitpct_threshold = opposite ? 0.0 : 1.0;
     filter.match_hitpct_threshold_opposite_dir = opposite ? 1.0 : 0.0;
     EXPECT_TRUE(closures().empty());
-    EXPECT_EQ(counts.refused["hits"], 1u);
+    EXPECT_EQ(counts.rejected[Rejection::kHits], 1u);
   }
   filter.match_hitpct_threshold_opposite_dir = 0.0;
   EXPECT_EQ(closures().size(), 1u);
   p.fast_correlative_scan_matcher.linear_search_window = 0.1;
   EXPECT_TRUE(closures().empty());
-  EXPECT_EQ(counts.refused["low_score"], 1u);
+  EXPECT_EQ(counts.rejected[Rejection::kLowScore], 1u);
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST_F(MapperCallsTest, NotifyDockedSomewhereElseChangesNoPose) {
   EXPECT_EQ(map().graph.switchable_edges.size(), closures);
   EXPECT_LT(between(before, mapper.sensor_pose()).translation().norm(), 1e-9);
   EXPECT_EQ(mapper.statistics().global.docks.accepted, 0u);
-  EXPECT_EQ(mapper.statistics().global.docks.refused.size(), 1u);
+  EXPECT_EQ(mapper.statistics().global.docks.rejected.by_text().size(), 1u);
 }
 
 TEST_F(MapperCallsTest, ADockClosureThatAllElseContradictsGoesOff) {

@@ -76,7 +76,7 @@ TEST(BranchAndBound, EqualsExhaustiveSearch) {
       }
     }
     const ScanMatch match = FastCorrelativeMatcher(grids, options).match(points, guess);
-    ASSERT_EQ(match.status, MatchStatus::kOk);
+    ASSERT_EQ(match.rejection, Rejection::kNone);
     EXPECT_NEAR(match.score, best, 0.4 / 255.0 + 1e-9);
     const Pose2 moved{match.pose.x - guess.x, match.pose.y - guess.y, wrap_angle(match.pose.theta - guess.theta)};
     EXPECT_DOUBLE_EQ(byte_score(*grids, points, guess, static_cast<int>(std::lround(moved.x / 0.05)),
@@ -84,8 +84,8 @@ TEST(BranchAndBound, EqualsExhaustiveSearch) {
                      best)
         << "seed " << seed;
     // Asked for more than there is, it finds nothing, and for a little less it does.
-    EXPECT_EQ(FastCorrelativeMatcher(grids, {0.35, 0.3, best}).match(points, guess).status, MatchStatus::kLowScore);
-    EXPECT_EQ(FastCorrelativeMatcher(grids, {0.35, 0.3, best - 1e-9}).match(points, guess).status, MatchStatus::kOk);
+    EXPECT_EQ(FastCorrelativeMatcher(grids, {0.35, 0.3, best}).match(points, guess).rejection, Rejection::kLowScore);
+    EXPECT_EQ(FastCorrelativeMatcher(grids, {0.35, 0.3, best - 1e-9}).match(points, guess).rejection, Rejection::kNone);
   }
 }
 
@@ -111,7 +111,7 @@ TEST(BranchAndBound, FindsAPlaceWithoutAGuess) {
   const FastCorrelativeMatcher matcher(grids, {1.0, 0.5, 0.4});
   for (const Pose2& truth : {Pose2{-1.4, -0.9, 2.5}, Pose2{-2.0, 0.6, -2.9}, Pose2{-2.4, 1.7, 0.4}}) {
     const ScanMatch match = matcher.match_anywhere(seen_from(truth, 9));
-    ASSERT_EQ(match.status, MatchStatus::kOk);
+    ASSERT_EQ(match.rejection, Rejection::kNone);
     EXPECT_LT(between(truth, match.pose).translation().norm(), 0.07);
     EXPECT_NEAR(wrap_angle(match.pose.theta - truth.theta), 0.0, 0.02);
   }
@@ -126,14 +126,14 @@ TEST(BranchAndBound, SaysWhatItCannotUse) {
   EXPECT_THROW(FastCorrelativeMatcher(grids, {1.0, std::nan(""), 0.4}), ParameterError);
   const FastCorrelativeMatcher matcher(grids, {});
   EXPECT_THROW(matcher.match(seen_from({}, 1), {std::nan(""), 0.0, 0.0}), InputError);
-  EXPECT_EQ(matcher.match({}, {}).status, MatchStatus::kEmptyScan);
-  EXPECT_EQ(matcher.match_anywhere({}).status, MatchStatus::kEmptyScan);
+  EXPECT_EQ(matcher.match({}, {}).rejection, Rejection::kGridEmptyScan);
+  EXPECT_EQ(matcher.match_anywhere({}).rejection, Rejection::kGridEmptyScan);
 }
 
 TEST(BranchAndBound, FindsNothingFarFromTheGrid) {
   const auto grids = std::make_shared<BoundGrids>(grid_of_room(kGrid), 4);
   const ScanMatch match = FastCorrelativeMatcher(grids, {0.5, 0.2, 0.3}).match(seen_from({}, 1), {200.0, 0.0, 0.0});
-  EXPECT_EQ(match.status, MatchStatus::kLowScore);
+  EXPECT_EQ(match.rejection, Rejection::kLowScore);
   EXPECT_EQ(match.pose.x, 200.0);
 }
 

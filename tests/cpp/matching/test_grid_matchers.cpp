@@ -46,7 +46,7 @@ TEST(CorrelativeMatcher, FindsAKnownOffset) {
     std::uniform_real_distribution<double> off(-0.15, 0.15);
     const Pose2 guess{kTruth.x + off(random), kTruth.y + off(random), kTruth.theta + off(random)};
     const ScanMatch match = matcher.match(seen_from(kTruth, seed + 100), guess);
-    EXPECT_EQ(match.status, MatchStatus::kOk);
+    EXPECT_EQ(match.rejection, Rejection::kNone);
     EXPECT_LT(distance(match.pose, kTruth), 0.05);
     EXPECT_NEAR(match.pose.theta, kTruth.theta, 0.025);
     EXPECT_GT(match.hit_fraction, 0.8);
@@ -139,7 +139,7 @@ TEST(Matchers, SayWhatTheyCannotUse) {
        {static_cast<const ScanMatcher*>(&ceres), static_cast<const ScanMatcher*>(&correlative)}) {
     EXPECT_THROW(matcher->match(seen_from(kTruth, 1), broken), InputError);
     const ScanMatch match = matcher->match({}, kTruth);
-    EXPECT_EQ(match.status, MatchStatus::kEmptyScan);
+    EXPECT_EQ(match.rejection, Rejection::kGridEmptyScan);
     EXPECT_EQ(distance(match.pose, kTruth), 0.0);
   }
 }

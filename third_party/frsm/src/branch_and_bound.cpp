@@ -43,10 +43,6 @@ class BranchAndBound {
     }
   }
 
-  ~BranchAndBound() { tell(); }
-  BranchAndBound(const BranchAndBound&) = delete;
-  BranchAndBound& operator=(const BranchAndBound&) = delete;
-
   std::optional<Candidate> run() {
     visit(make_node(0, 0, 0, 0));  // a good start prunes much
     const int top = static_cast<int>(levels_.size()) - 1;
@@ -58,6 +54,7 @@ class BranchAndBound {
     }
     std::stable_sort(roots.begin(), roots.end(), [](const Node& a, const Node& b) { return a.bound > b.bound; });
     for (const Node& root : roots) visit(root);
+    tell();
     return best_;
   }
 

@@ -79,7 +79,7 @@ void ChainBuilder::track(LocalScan& scan) {
   restart_if_poor(scan);
   T_odom_sensor_tracked_ = scan.T_odom_sensor;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
-  if (scan.tracked.usable) ++counts_.scans_matched;
+  if (scan.tracked.usable()) ++counts_.scans_matched;
 }
 
 void ChainBuilder::extrapolate(LocalScan& scan) const {
@@ -111,7 +111,7 @@ void ChainBuilder::begin_local_map(LocalScan& scan, const Pose2& T_local_sensor)
 }
 
 void ChainBuilder::restart_if_poor(LocalScan& scan) {
-  const bool poor = scan.tracked.usable && scan.tracked.hit_fraction < kPoorHits && matcher_.knows_odometry();
+  const bool poor = scan.tracked.usable() && scan.tracked.hit_fraction < kPoorHits && matcher_.knows_odometry();
   poor_in_a_row_ = poor ? poor_in_a_row_ + 1 : 0;
   if (poor_in_a_row_ < kMaxPoor) return;
   poor_in_a_row_ = 0;
@@ -155,15 +155,15 @@ ChainNode ChainBuilder::extend(LocalScan& scan) {
                                   scan.tracked, after_gap && matcher_.knows_odometry());
   const bool is_fresh = local_map_ != LocalMap::kKnown;
   if (match.contradicts_odometry && !is_fresh) return contradict(scan, T_newest_node, match);
-  if (is_fresh) match.refusal = "restarted";  // the anchor is not on the map that the scan was matched with
-  const bool believed = match.refusal.empty();
+  if (is_fresh) match.rejection = Rejection::kRestarted;  // the anchor is not on the map that the scan was matched with
+  const bool believed = match.rejection == Rejection::kNone;
   ChainNode node;
   const auto add_edge = [&](std::uint64_t from, const Pose2& pose, const Eigen::Matrix3d& covariance,
                             ConstraintType type) {
     node.addition.edges.push_back({0, from, next_id_, {scan.cloud.time, next_id_, pose, covariance, type}});
   };
   if (!believed || after_gap) {
-    Eigen::Matrix3d covariance = matcher_.odometry_covariance(T_newest_node, match.refusal);
+    Eigen::Matrix3d covariance = matcher_.odometry_covariance(T_newest_node, match.rejection);
     if (local_map_ == LocalMap::kFreshPoor) covariance += least_contradiction();
     add_edge(newest_.id, T_newest_node, covariance, ConstraintType::kOdometry);
   }
@@ -173,7 +173,7 @@ ChainNode ChainBuilder::extend(LocalScan& scan) {
     node.addition.T_from_node = match.T_anchor_node;
   } else {
     ++counts_.odometry_links;
-    ++counts_.match_refusals[match.refusal];
+    ++counts_.match_rejections[match.rejection];
     scan.missed = true;
     node.addition.from = newest_.id;
     node.addition.T_from_node = T_newest_node;
@@ -212,7 +212,7 @@ ChainNode ChainBuilder::contradict(LocalScan& scan, const Pose2& T_newest_node, 
   node.addition.T_from_node = chosen;
   node.addition.edges = {loose_edge(newest_.id, chosen, covariance, scan)};
   begin_local_map(scan, newest_.T_local_sensor * chosen);
-  scan.tracked.status = "contradicts odometry";
+  scan.tracked.rejection = Rejection::kContradictsOdometry;
   node.addition.result.target = next_id_;
   node.addition.result.covariance = covariance;
   node.addition.result.hit_fraction = scan.tracked.hit_fraction;

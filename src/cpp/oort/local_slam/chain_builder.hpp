@@ -3,13 +3,12 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
-#include <map>
-#include <string>
 
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/geometry/pose2.hpp"
 #include "oort/local_slam/incremental_graph_builder.hpp"
 #include "oort/map/node_addition.hpp"
+#include "oort/matching/rejection.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -51,7 +50,7 @@ struct ChainCounts {
   std::uint64_t scans_matched = 0;
   std::uint64_t nodes = 0;
   std::uint64_t odometry_links = 0;                     ///< nodes whose match was rejected
-  std::map<std::string, std::uint64_t> match_refusals;  ///< of nodes, by reason
+  RejectionCounts match_rejections;  ///< of nodes
   std::uint64_t contradictions = 0;                     ///< segments begun as odometry and scans disagreed
 };
 

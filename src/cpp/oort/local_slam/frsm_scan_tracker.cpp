@@ -28,6 +28,11 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   return params;
 }
 
+/// Why the tracker did not take a match: it asks for more hits than the matcher after scans without a match.
+Rejection rejection_of_unmatched(frsm::Status status) {
+  return status == frsm::Status::kOk ? Rejection::kFewHitsAfterGap : rejection_of(status);
+}
+
 }  // namespace
 
 FrsmScanTracker::FrsmScanTracker(const FrsmMatcherParameters& parameters) : tracker_(tracker_params(parameters)) {}
@@ -47,9 +52,8 @@ TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, cons
   tracked.covariance = match.covariance;
   tracked.hit_fraction = match.hit_fraction;
   tracked.degenerate = match.degenerate;
-  tracked.usable = tracker_.matched();
   tracked.restarted = tracker_.restarts() > restarts;
-  tracked.status = frsm::to_string(match.status);
+  tracked.rejection = tracker_.matched() ? Rejection::kNone : rejection_of_unmatched(match.status);
   return tracked;
 }
 

@@ -67,7 +67,7 @@ TrackedScan GridScanTracker::track(const frsm::Points& points, double /*time*/, 
   const Pose2 expected = pose_ * T_previous_sensor;
   if (grids_.empty()) return begin(near, expected);
   TrackedScan tracked = match(near, expected);
-  if (tracked.usable) {
+  if (tracked.usable()) {
     rejected_ = 0;
     pose_ = tracked.T_local_sensor;
     if (is_key_scan(pose_)) pending_ = Pending{near, pose_};
@@ -117,7 +117,7 @@ TrackedScan GridScanTracker::match(const Points& points, const Pose2& expected) 
                                    p.rotation_delta_cost_weight};
   ScanMatch best = CorrelativeMatcher(grids_.grid(kSearchGrid), options).match(points, expected);
   TrackedScan tracked;
-  tracked.status = to_string(best.status);
+  tracked.rejection = best.rejection;
   if (!best.usable()) return tracked;
   if (p.use_ceres_refinement) {
     best = CeresMatcher(grids_.grid(kRefinementGrid), p.ceres_scan_matcher)
@@ -136,8 +136,7 @@ TrackedScan GridScanTracker::match(const Points& points, const Pose2& expected) 
     take(second, tracked);
     tracked.hit_fraction = second.hit_fraction;
   }
-  tracked.usable = tracked.hit_fraction >= p.min_sm_accept_score;
-  if (!tracked.usable) tracked.status = to_string(MatchStatus::kLowScore);
+  if (tracked.hit_fraction < p.min_sm_accept_score) tracked.rejection = Rejection::kLowScore;
   return tracked;
 }
 
@@ -146,7 +145,7 @@ TrackedScan GridScanTracker::begin(const Points& points, const Pose2& T_local_se
   pending_ = Pending{points, T_local_sensor};
   TrackedScan tracked;
   tracked.T_local_sensor = T_local_sensor;
-  tracked.status = kNoLocalMap;
+  tracked.rejection = Rejection::kNoHits;  // there is no local map yet
   return tracked;
 }
 

@@ -82,7 +82,7 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
 }
 
 bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
-  return scan.usable && scan.hit_fraction >= link_.min_hits;
+  return scan.usable() && scan.hit_fraction >= link_.min_hits;
 }
 
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
@@ -91,15 +91,15 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
   const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
-  link.refusal = match_refusal(parameters_, node, T_local_anchor, T_anchor_node_odometry);
+  link.rejection = match_rejection(parameters_, node, T_local_anchor, T_anchor_node_odometry);
   const bool comparable = motion_model_ && link_.odometry_is_prior;
-  if (comparable && node.hit_fraction >= kTellingHits && is_too_far(link.refusal)) {
+  if (comparable && node.hit_fraction >= kTellingHits && is_too_far(link.rejection)) {
     link.contradicts_odometry = true;
     link.T_anchor_node_weighed = T_anchor_node_odometry;
   }
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
                                      link.T_anchor_node.translation().norm());
-  if (motion_model_ && link.refusal.empty()) {
+  if (motion_model_ && link.rejection == Rejection::kNone) {
     if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
     const bool telling = !node.degenerate && node.hit_fraction >= kTellingHits;
     if (telling) odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
@@ -120,10 +120,9 @@ Eigen::Matrix3d IncrementalGraphBuilder::prior_covariance(const Pose2& T_before_
   return Eigen::Vector3d(position, position, 1.0).asDiagonal();
 }
 
-Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_before_after,
-                                                             const std::string& refusal) const {
+Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_before_after, Rejection rejection) const {
   if (motion_model_) {
-    const bool undisputed = refusal.empty() || nothing_was_seen(refusal);
+    const bool undisputed = rejection == Rejection::kNone || nothing_was_seen(rejection);
     return undisputed ? odometry_model_.covariance(T_before_after) : odometry_model_.model().covariance(T_before_after);
   }
   return Eigen::Vector3d(parameters_.odom_cov_xx, parameters_.odom_cov_yy, parameters_.odom_cov_tt).asDiagonal();

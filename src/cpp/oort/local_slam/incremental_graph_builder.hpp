@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <frsm/types.hpp>
 #include <memory>
-#include <string>
 
 #include "oort/geometry/pose2.hpp"
 #include "oort/graph/graph.hpp"
@@ -17,11 +16,11 @@ namespace oort {
 /// What the scan matcher says of a node, seen from the last node of its segment whose match was believed.
 struct MatchLink {
   Pose2 T_anchor_node;
-  Eigen::Matrix3d covariance;  ///< along the axes of the anchor
-  std::string refusal;         ///< why it is not to be believed; empty when it is
+  Eigen::Matrix3d covariance;              ///< along the axes of the anchor
+  Rejection rejection = Rejection::kNone;  ///< why it is not to be believed
   /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
   /// constant odometry model, nor with a matcher that does not have odometry as its prior, nor of a match that is
-  /// refused for what it is. Of one that is refused only for how far it is from odometry, odometry's pose counts.
+  /// rejected for what it is. Of one that is rejected only for how far it is from odometry, odometry's pose counts.
   bool contradicts_odometry = false;
   Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
@@ -73,8 +72,8 @@ class IncrementalGraphBuilder {
   bool learns_odometry() const { return motion_model_ && parameters_.odometry_noise.least_learned < 1.0; }
 
   /// Covariance of a motion by odometry alone, along the axes of the frame before. What has been learned of odometry
-  /// holds while scans do not speak against it: with a refusal of what was seen, it is as uncertain as configured.
-  Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after, const std::string& refusal = "") const;
+  /// holds while scans do not speak against it: with a rejection of what was seen, it is as uncertain as configured.
+  Eigen::Matrix3d odometry_covariance(const Pose2& T_before_after, Rejection rejection = Rejection::kNone) const;
 
  private:
   Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;

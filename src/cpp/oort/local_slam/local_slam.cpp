@@ -102,7 +102,7 @@ bool LocalSlam::is_due(const LocalScan& scan) const {
 
 /// Wheels that slip, or a robot that is carried: its scans tell of a motion that odometry does not.
 bool LocalSlam::has_moved_unnoticed(const LocalScan& scan) const {
-  if (!chain_.is_going_on() || !scan.tracked.usable || !chain_.matcher().knows_odometry()) return false;
+  if (!chain_.is_going_on() || !scan.tracked.usable() || !chain_.matcher().knows_odometry()) return false;
   const Pose2 moved = T_base_sensor_ * chain_.from_newest(scan.tracked.T_local_sensor) * inverse(T_base_sensor_);
   return moved.translation().norm() >= kUnnoticed * parameters_.linear_update ||
          std::abs(moved.theta) >= kUnnoticed * parameters_.angular_update;

@@ -5,9 +5,9 @@
 #include <frsm/types.hpp>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/matching/rejection.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -26,14 +26,12 @@ struct TrackedScan {
   double hit_fraction = 0.0;
   double extent = 0.0;      ///< root mean square distance of the returns from their middle [m]
   bool degenerate = false;  ///< the match leaves a direction open
-  bool usable = false;
-  bool restarted = false;  ///< a fresh local map begins with this scan: the old one did not fit any more
-  std::string status;
-  std::optional<CoarseMatch> first_stage;  ///< of a matcher of two stages
-};
+  bool restarted = false;   ///< a fresh local map begins with this scan: the old one did not fit any more
+  Rejection rejection = Rejection::kNotMatched;  ///< of the match by itself: no gates
+  std::optional<CoarseMatch> first_stage;        ///< of a matcher of two stages
 
-/// The status of a scan that a tracker on grids begins a local map with.
-constexpr const char* kNoLocalMap = "no_overlap";
+  bool usable() const { return rejection == Rejection::kNone; }
+};
 
 /// Follows the sensor from scan to scan by matching each against a local map of recent ones.
 class ScanTracker {

@@ -157,10 +157,10 @@ void Localizer::predict(const Pose2& T_odom_sensor) {
 }
 
 void Localizer::follow(const PointCloud& cloud) {
-  std::string refusal;
-  const std::optional<Hypothesis> found = match(cloud, refusal);
+  Rejection rejection = Rejection::kNone;
+  const std::optional<Hypothesis> found = match(cloud, rejection);
   if (!found) {
-    ++statistics_.match_refusals[refusal];
+    ++statistics_.match_rejections[rejection];
     doubtful_scans_ += support_ < kContradiction ? kContradictionCounts : 1;
     return;
   }
@@ -174,7 +174,7 @@ void Localizer::follow(const PointCloud& cloud) {
   doubtful_scans_ = 0;
 }
 
-std::optional<Hypothesis> Localizer::match(const PointCloud& cloud, std::string& refusal) {
+std::optional<Hypothesis> Localizer::match(const PointCloud& cloud, Rejection& rejection) {
   const frsm::Prior prior{to_frsm(*T_map_sensor_), covariance_};
   const auto half_width = [&](int axis, double least, double most) {
     return std::clamp(kSigmas * std::sqrt(prior.covariance(axis, axis)), std::min(least, most), most);
@@ -187,14 +187,14 @@ std::optional<Hypothesis> Localizer::match(const PointCloud& cloud, std::string&
   map_->weigh(cloud, found.T_map_sensor, found.support);
   support_ = found.support.value();
   if (!match.usable())
-    refusal = frsm::to_string(match.status);
+    rejection = rejection_of(match.status);
   else if (support_ < parameters_.min_support)
-    refusal = "low support";
+    rejection = Rejection::kLowSupport;
   else if (!is_expected(found))
-    refusal = "unexpected";
+    rejection = Rejection::kUnexpected;
   else if (contradicts_memory(found))
-    refusal = "contradicts earlier views";
-  return refusal.empty() ? std::optional<Hypothesis>(found) : std::nullopt;
+    rejection = Rejection::kContradictsEarlierViews;
+  return rejection == Rejection::kNone ? std::optional<Hypothesis>(found) : std::nullopt;
 }
 
 bool Localizer::is_expected(const Hypothesis& found) const {
@@ -220,8 +220,8 @@ bool Localizer::contradicts_memory(const Hypothesis& found) const {
 void Localizer::search(const PlacedScan& scan) {
   ++statistics_.searches;
   const Relocalization found = relocalizer_.find(views_.latest(static_cast<std::size_t>(kept_parameters_.max_scans)));
-  if (found.status != RelocalizationStatus::kFound) {
-    ++statistics_.search_refusals[std::string(to_string(found.status))];
+  if (!found.found()) {
+    ++statistics_.search_rejections[found.rejection];
     return;
   }
   if (!T_map_sensor_ || !is_expected(*found.best)) {

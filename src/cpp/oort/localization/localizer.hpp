@@ -4,10 +4,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <frsm/matcher.hpp>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "oort/geometry/point_cloud.hpp"
@@ -15,6 +13,7 @@
 #include "oort/localization/reference_map.hpp"
 #include "oort/localization/relocalizer.hpp"
 #include "oort/localization/view_memory.hpp"
+#include "oort/matching/rejection.hpp"
 #include "oort/odometry/odometry_model.hpp"
 
 namespace oort {
@@ -34,8 +33,8 @@ struct LocalizationStatistics {
   std::uint64_t matched = 0;   ///< scans whose match was believed
   std::uint64_t searches = 0;  ///< of the whole map
   std::uint64_t jumps = 0;     ///< times that a search took the place of a pose which was no longer trusted
-  std::map<std::string, std::uint64_t> match_refusals;
-  std::map<std::string, std::uint64_t> search_refusals;
+  RejectionCounts match_rejections;
+  RejectionCounts search_rejections;
 };
 
 /// Follows a robot on a map that does not change. Matches are made near the pose that odometry expects; what the map
@@ -76,7 +75,7 @@ class Localizer {
 
   void predict(const Pose2& T_odom_sensor);
   void follow(const PointCloud& cloud);
-  std::optional<Hypothesis> match(const PointCloud& cloud, std::string& refusal);
+  std::optional<Hypothesis> match(const PointCloud& cloud, Rejection& rejection);
   bool may_jump(const Hypothesis& found, const PlacedScan& scan);
   bool is_expected(const Hypothesis& found) const;
   bool is_surprise(const Hypothesis& found) const;

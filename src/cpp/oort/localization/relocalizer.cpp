@@ -71,24 +71,6 @@ bool same_place(const Pose2& a, const Pose2& b) {
 
 }  // namespace
 
-std::string_view to_string(RelocalizationStatus status) {
-  switch (status) {
-    case RelocalizationStatus::kFound:
-      return "found";
-    case RelocalizationStatus::kTooFewPoints:
-      return "too_few_points";
-    case RelocalizationStatus::kNoMatch:
-      return "no_match";
-    case RelocalizationStatus::kLowSupport:
-      return "low_support";
-    case RelocalizationStatus::kAmbiguous:
-      return "ambiguous";
-    case RelocalizationStatus::kImprecise:
-      return "imprecise";
-  }
-  return "unknown";
-}
-
 Relocalizer::Relocalizer(std::shared_ptr<const ReferenceMap> map, const Parameters& parameters)
     : map_(std::move(map)),
       parameters_(parameters.localization.relocalizer),
@@ -103,7 +85,7 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
   Relocalization result;
   const frsm::Points points = one_per_cell(join(scans), kMatchVoxel);
   if (points.size() < static_cast<std::size_t>(parameters_.min_points)) {
-    result.status = RelocalizationStatus::kTooFewPoints;
+    result.rejection = Rejection::kSearchTooFewPoints;
     return result;
   }
   bool complete = true;
@@ -117,7 +99,7 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
     });
     if (second != found.end()) result.second = *second;
   }
-  result.status = judge(result, complete);
+  result.rejection = judge(result, complete);
   return result;
 }
 
@@ -151,19 +133,19 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   return found;
 }
 
-RelocalizationStatus Relocalizer::judge(const Relocalization& result, bool complete) const {
-  if (!result.best) return complete ? RelocalizationStatus::kNoMatch : RelocalizationStatus::kAmbiguous;
+Rejection Relocalizer::judge(const Relocalization& result, bool complete) const {
+  if (!result.best) return complete ? Rejection::kNoMatch : Rejection::kAmbiguous;
   const double best = result.best->support.value();
-  if (!complete) return RelocalizationStatus::kAmbiguous;
-  if (best < parameters_.min_support) return RelocalizationStatus::kLowSupport;
+  if (!complete) return Rejection::kAmbiguous;
+  if (best < parameters_.min_support) return Rejection::kSearchLowSupport;
   if (result.second && best - result.second->support.value() < parameters_.min_lead) {
-    return RelocalizationStatus::kAmbiguous;
+    return Rejection::kAmbiguous;
   }
   const Eigen::Matrix2d position = result.best->covariance.topLeftCorner<2, 2>();
   const double widest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(position).eigenvalues().maxCoeff();
   const bool precise = std::sqrt(widest) <= parameters_.max_position_deviation &&
                        std::sqrt(result.best->covariance(2, 2)) <= parameters_.max_heading_deviation;
-  return precise ? RelocalizationStatus::kFound : RelocalizationStatus::kImprecise;
+  return precise ? Rejection::kNone : Rejection::kImprecise;
 }
 
 }  // namespace oort

@@ -4,26 +4,14 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/geometry/pose2.hpp"
 #include "oort/localization/reference_map.hpp"
+#include "oort/matching/rejection.hpp"
 
 namespace oort {
-
-/// Why a search without a guess gave the answer or refused one.
-enum class RelocalizationStatus {
-  kFound,
-  kTooFewPoints,  ///< the scans show too little
-  kNoMatch,       ///< no place of the map fits
-  kLowSupport,    ///< the best place does not fit well enough
-  kAmbiguous,     ///< another place fits nearly as well, or there are more than can be told apart
-  kImprecise,     ///< the place is found but along some direction not where exactly
-};
-
-std::string_view to_string(RelocalizationStatus status);
 
 /// A scan and where odometry saw it.
 struct PlacedScan {
@@ -39,9 +27,14 @@ struct Hypothesis {
 };
 
 struct Relocalization {
-  RelocalizationStatus status = RelocalizationStatus::kNoMatch;
-  std::optional<Hypothesis> best;    ///< the answer if status is kFound; what was refused otherwise
+  /// kNone; or kSearchTooFewPoints: the scans show too little; kNoMatch: no place of the map fits; kSearchLowSupport:
+  /// the best place does not fit well enough; kAmbiguous: another place fits nearly as well, or there are more than can
+  /// be told apart; kImprecise: the place is found but along some direction not where exactly.
+  Rejection rejection = Rejection::kNoMatch;
+  std::optional<Hypothesis> best;    ///< the answer if it was found; what was rejected otherwise
   std::optional<Hypothesis> second;  ///< the next place apart from it, by 0.3 m or 0.3 rad
+
+  bool found() const { return rejection == Rejection::kNone; }
 };
 
 /// Finds the robot on a map without a guess: branch and bound over the whole map and all headings (Hess et al. 2016),
@@ -57,7 +50,7 @@ class Relocalizer {
  private:
   std::vector<Hypothesis> hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
                                      bool& complete) const;
-  RelocalizationStatus judge(const Relocalization& result, bool complete) const;
+  Rejection judge(const Relocalization& result, bool complete) const;
 
   std::shared_ptr<const ReferenceMap> map_;
   RelocalizerParameters parameters_;

@@ -22,7 +22,7 @@ void ClosureLog::accept(std::uint64_t query, std::uint64_t candidate) {
   const auto found = std::find_if(attempts_.rbegin(), attempts_.rend(), [=](const ClosureAttempt& attempt) {
     return attempt.query == query && attempt.candidate == candidate;
   });
-  if (found != attempts_.rend()) found->reason.clear();
+  if (found != attempts_.rend()) found->rejection = Rejection::kNone;
 }
 
 void ClosureLog::trim() {

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <string>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/matching/rejection.hpp"
 
 namespace oort {
 
@@ -14,7 +14,7 @@ namespace oort {
 struct ClosureAttempt {
   std::uint64_t query = 0;
   std::uint64_t candidate = 0;
-  std::string reason;         ///< of the refusal; empty: accepted
+  Rejection rejection = Rejection::kNone;
   Pose2 T_candidate_query;    ///< where the match put the query; where the graph expected it, if there is no match
   double hit_fraction = 0.0;  ///< of the match that was looked at last
 };
@@ -27,7 +27,7 @@ class ClosureLog {
 
   void add(ClosureAttempt attempt);
 
-  /// An attempt that was refused when it was added is accepted after all.
+  /// An attempt that was rejected when it was added is accepted after all.
   void accept(std::uint64_t query, std::uint64_t candidate);
 
   const std::deque<ClosureAttempt>& attempts() const { return attempts_; }

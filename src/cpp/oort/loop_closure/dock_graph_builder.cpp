@@ -103,17 +103,17 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
                                               ClosureCounts& counts) const {
   ++counts.tried;
   const DockPlace dock = nearest_dock(map, chains, query);
-  std::string reason;
+  Rejection rejection = Rejection::kNone;
   std::optional<Closure> closure;
   if (dock.node == query) {
-    reason = "same_node";
+    rejection = Rejection::kSameNode;
   } else {
     const auto least = static_cast<std::size_t>(parameters_.dock_match_least_size);
     const auto most = static_cast<std::size_t>(parameters_.dock_match_submap_size);
     std::size_t size = walk_chain(map, chains, query, Direction::kBackward, most).size();
-    closure = match(map, chains, query, dock, size, reason);
+    closure = match(map, chains, query, dock, size, rejection);
     for (size /= 2; !closure && size >= least; size /= 2) {
-      std::string later;  // what the documented number of nodes says is what counts
+      Rejection later = Rejection::kNone;  // what the documented number of nodes says is what counts
       closure = match(map, chains, query, dock, size, later);
       if (closure && closure->hit_fraction == 0.0) closure.reset();  // but more nodes did see something
     }
@@ -121,20 +121,20 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
   if (closure) {
     ++counts.accepted;
   } else {
-    ++counts.refused[reason];
+    ++counts.rejected[rejection];
   }
   return closure;
 }
 
 std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
                                                const DockPlace& dock, std::size_t query_size,
-                                               std::string& reason) const {
+                                               Rejection& rejection) const {
   const std::vector<PlacedNode> query_nodes = walk_chain(map, chains, query, Direction::kBackward, query_size);
   const std::uint64_t way_back = first_of_the_way_back(parameters_, dock.node, query, query_size);
   const std::vector<PlacedNode> reference =
       reference_nodes(map, chains, dock.node, static_cast<std::size_t>(parameters_.dock_submap_size), way_back, query);
   if (reference.empty()) {
-    reason = "no_reference";
+    rejection = Rejection::kNoReference;
     return std::nullopt;
   }
 
@@ -152,11 +152,11 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
     return Closure{dock.node, query, dock.T_node_dock, prior.covariance, 0.0};
   }
   if (match.hits == 0) {
-    reason = "no_overlap";
+    rejection = Rejection::kNoHits;
   } else if (match.hit_fraction < needed_hits(parameters_, query_size)) {
-    reason = "hits";
+    rejection = Rejection::kHits;
   } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
-    reason = "distance";
+    rejection = Rejection::kDistance;
   } else {
     Eigen::Matrix3d covariance = match.covariance;
     if (parameters_.closure_firmness > 1.0) {  // what can hardly be doubted must be honest

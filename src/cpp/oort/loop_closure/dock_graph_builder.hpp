@@ -33,13 +33,13 @@ class DockGraphBuilder {
   explicit DockGraphBuilder(const Parameters& parameters);
 
   /// The closure from the dock's node to `query`, a node recorded on the dock: the latest nodes matched together, or,
-  /// if that is refused, fewer and fewer of them. Where too little is seen to match, it is the dock's own place with
+  /// if that is rejected, fewer and fewer of them. Where too little is seen to match, it is the dock's own place with
   /// the reach of its contacts as two deviations. Counts the attempt.
   std::optional<Closure> find(const Map& map, const Chains& chains, std::uint64_t query, ClosureCounts& counts) const;
 
  private:
   std::optional<Closure> match(const Map& map, const Chains& chains, std::uint64_t query, const DockPlace& dock,
-                               std::size_t query_size, std::string& reason) const;
+                               std::size_t query_size, Rejection& rejection) const;
 
   DockGraphBuilderParameters parameters_;
   frsm::TableParams table_;

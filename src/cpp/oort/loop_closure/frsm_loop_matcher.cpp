@@ -65,10 +65,10 @@ bool FrsmLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t c
 LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
                                          std::uint64_t candidate, const SearchWindow& window, WorkMeter* meter) {
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
-  const auto refused = [](const std::string& reason, const Pose2& pose, double hits) {
-    return Found{pose, Eigen::Matrix3d::Zero(), hits, reason};
+  const auto rejected = [](Rejection rejection, const Pose2& pose, double hits) {
+    return Found{pose, Eigen::Matrix3d::Zero(), hits, rejection};
   };
-  if (is_small(chains, candidate)) return refused("small_submap", expected, 0.0);
+  if (is_small(chains, candidate)) return rejected(Rejection::kSmallSubmap, expected, 0.0);
   const frsm::Points points =
       thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach),
               scale_.fine_points);
@@ -81,18 +81,18 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, s
   const frsm::Prior prior{to_frsm(expected), window.covariance};
   const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,
                                            {window.xy, window.xy, window.theta}, &prior, on_lookups);
-  if (rough.hits == 0) return refused("no_overlap", expected, 0.0);
+  if (rough.hits == 0) return rejected(Rejection::kNoHits, expected, 0.0);
   const Pose2 roughly = from_frsm(rough.pose);
   if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
-    return refused("rough_hits", roughly, rough.hit_fraction);
-  if (rough.saturated) return refused("window_border", roughly, rough.hit_fraction);
-  if (rough.ambiguity > scale_.max_ambiguity) return refused("ambiguous", roughly, rough.hit_fraction);
+    return rejected(Rejection::kRoughHits, roughly, rough.hit_fraction);
+  if (rough.saturated) return rejected(Rejection::kWindowBorder, roughly, rough.hit_fraction);
+  if (rough.ambiguity > scale_.max_ambiguity) return rejected(Rejection::kAmbiguous, roughly, rough.hit_fraction);
   const double fine_xy = kFineCells * table_.cell;
   const frsm::Match fine =
       matcher_.match(*submap, points, rough.pose, {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step},
                      &prior, on_lookups);
   return {from_frsm(fine.pose), fine.covariance + scale_.bend(), fine.hit_fraction,
-          fine.hit_fraction < parameters_.fine_match_hitpct_threshold ? "fine_hits" : ""};
+          fine.hit_fraction < parameters_.fine_match_hitpct_threshold ? Rejection::kFineHits : Rejection::kNone};
 }
 
 }  // namespace oort

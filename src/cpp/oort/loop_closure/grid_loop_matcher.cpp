@@ -3,7 +3,6 @@
 #include "oort/loop_closure/grid_loop_matcher.hpp"
 
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "oort/grid/range_data.hpp"
@@ -80,10 +79,8 @@ bool GridLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t c
 LoopMatcher::Found GridLoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
                                          std::uint64_t candidate, const SearchWindow& window, WorkMeter* meter) {
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
-  const auto refused = [&](std::string_view reason) {
-    return Found{expected, Eigen::Matrix3d::Zero(), 0.0, std::string(reason)};
-  };
-  if (is_small(chains, candidate)) return refused("small_submap");
+  const auto rejected = [&](Rejection rejection) { return Found{expected, Eigen::Matrix3d::Zero(), 0.0, rejection}; };
+  if (is_small(chains, candidate)) return rejected(Rejection::kSmallSubmap);
   const Points points = adaptive_voxel_filter(
       to_points(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach)),
       parameters_.adaptive_voxel_filter);
@@ -91,9 +88,9 @@ LoopMatcher::Found GridLoopMatcher::find(const Map& map, const Chains& chains, s
   const std::shared_ptr<const BoundGrids> submap = submaps_.get(map, chains, candidate);
   const ScanMatch rough =
       FastCorrelativeMatcher(submap, {window.xy, window.theta, parameters_.min_score}).match(points, expected);
-  if (!rough.usable()) return refused(to_string(rough.status));
+  if (!rough.usable()) return rejected(rough.rejection);
   const ScanMatch fine = CeresMatcher(submap->grid(), parameters_.ceres_scan_matcher).match(points, rough.pose);
-  return {fine.pose, fine.covariance + scale_.bend(), fine.hit_fraction, ""};
+  return {fine.pose, fine.covariance + scale_.bend(), fine.hit_fraction, Rejection::kNone};
 }
 
 }  // namespace oort

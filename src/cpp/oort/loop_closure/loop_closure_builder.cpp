@@ -34,7 +34,6 @@ constexpr double kWorkPerFacingReturn = 0.4;
 // A closure that moves the newest node by more waits for others that say the same.
 constexpr double kFar = 0.5;        // [m]
 constexpr double kFarAngle = 0.15;  // [rad]
-constexpr const char* kUnconfirmed = "unconfirmed";
 
 LoopSearch loop_search(const LoopClosureGraphBuilderParameters& parameters) {
   if (parameters.scanmatcher == "branch_and_bound_matcher") {
@@ -92,20 +91,20 @@ struct Difference {
   double angle;
 };
 
-/// The rules of the match_filter (docs/parameters.md tells each threshold); the reason of a refusal, or "".
-std::string refusal(const MatchFilterParameters& filter, double hits, const Difference& difference, bool is_close,
-                    bool is_opposite) {
+/// The rules of the match_filter (docs/parameters.md tells each threshold).
+Rejection gate(const MatchFilterParameters& filter, double hits, const Difference& difference, bool is_close,
+               bool is_opposite) {
   if (is_close) {
-    if (difference.distance >= filter.close_node_max_dist) return "close_distance";
-    if (difference.angle >= filter.match_max_ang_diff) return "angle";
-    return hits >= filter.close_node_hitpct_threshold ? "" : "close_hits";
+    if (difference.distance >= filter.close_node_max_dist) return Rejection::kCloseDistance;
+    if (difference.angle >= filter.match_max_ang_diff) return Rejection::kAngle;
+    return hits >= filter.close_node_hitpct_threshold ? Rejection::kNone : Rejection::kCloseHits;
   }
   const double needed = is_opposite ? filter.match_hitpct_threshold_opposite_dir : filter.match_hitpct_threshold;
   const double needed_far =
       is_opposite ? filter.match_hitpct_threshold_high_opposite_dir : filter.match_hitpct_threshold_high;
-  if (difference.distance < filter.match_max_dist && hits > needed) return "";
-  if (difference.distance < filter.match_max_dist_high && hits > needed_far) return "";
-  return difference.distance < filter.match_max_dist_high ? "hits" : "distance";
+  if (difference.distance < filter.match_max_dist && hits > needed) return Rejection::kNone;
+  if (difference.distance < filter.match_max_dist_high && hits > needed_far) return Rejection::kNone;
+  return difference.distance < filter.match_max_dist_high ? Rejection::kHits : Rejection::kDistance;
 }
 
 }  // namespace
@@ -157,17 +156,17 @@ std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map&
   const Closure closure{attempt.query, attempt.candidate, inverse(found.T_candidate_query),
                         inverse_covariance(found.T_candidate_query, found.covariance), found.hit_fraction};
   std::vector<Closure> believed;
-  if (found.refusal.empty()) {
+  if (found.rejection == Rejection::kNone) {
     if (must_be_confirmed(map, closure)) {
       believed = confirmation_.add(map, closure);
-      if (believed.empty()) found.refusal = kUnconfirmed;  // until it is
+      if (believed.empty()) found.rejection = Rejection::kUnconfirmed;  // until it is
     } else {
       believed = {closure};
     }
   }
   ++counts.tried;
-  if (!found.refusal.empty()) ++counts.refused[found.refusal];
-  log.add({attempt.query, attempt.candidate, found.refusal, found.T_candidate_query, found.hit_fraction});
+  if (found.rejection != Rejection::kNone) ++counts.rejected[found.rejection];
+  log.add({attempt.query, attempt.candidate, found.rejection, found.T_candidate_query, found.hit_fraction});
   // Found where it was expected: no need to look farther off.
   const auto is_same = [&](const Attempt& other) {
     return other.query == attempt.query && other.candidate == attempt.candidate;
@@ -176,7 +175,7 @@ std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map&
   for (const Closure& accepted : believed) {
     ++counts.accepted;
     if (accepted.from == attempt.query && accepted.to == attempt.candidate) continue;
-    --counts.refused[kUnconfirmed];
+    --counts.rejected[Rejection::kUnconfirmed];
     log.accept(accepted.from, accepted.to);
   }
   return believed;
@@ -255,14 +254,14 @@ LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chain
                                              WorkMeter* meter) {
   const auto [query, candidate, window] = attempt;
   LoopMatcher::Found found = matcher_for(attempt).find(map, chains, query, candidate, window, meter);
-  if (!found.refusal.empty()) return found;
+  if (found.rejection != Rejection::kNone) return found;
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const Pose2 moved = between(expected, found.T_candidate_query);
-  found.refusal =
-      refusal(search_.match_filter, found.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
+  found.rejection =
+      gate(search_.match_filter, found.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
               is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
               std::abs(expected.theta) >= search_.match_filter.opposite_dir_threshold);
-  if (!found.refusal.empty()) return found;
+  if (found.rejection != Rejection::kNone) return found;
   charge(meter, kWorkPerFacingReturn * static_cast<double>(map.clouds[query].points.size()) *
                     (parameters_.candidate_search.submap_neighborhood_size + 1));
   const FacingMap facing(map, chains, candidate,
@@ -270,7 +269,7 @@ LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chain
                                                             parameters_.candidate_search.submap_neighborhood_size)));
   if (facing.agreement(surface_points(returns_of(map.clouds[query])), found.T_candidate_query) <
       search_.min_facing_share) {
-    found.refusal = "other_side";
+    found.rejection = Rejection::kOtherSide;
   }
   return found;
 }

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 
 #include "oort/geometry/work_meter.hpp"
 #include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/matching/rejection.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -46,7 +46,7 @@ class LoopMatcher {
     Pose2 T_candidate_query;     ///< the best there is, believed or not
     Eigen::Matrix3d covariance;  ///< along the axes of the candidate
     double hit_fraction = 0.0;
-    std::string refusal;  ///< why it is not to be believed; empty when it is
+    Rejection rejection = Rejection::kNone;  ///< why it is not to be believed
   };
 
   virtual ~LoopMatcher() = default;

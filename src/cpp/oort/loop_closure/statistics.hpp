@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <map>
-#include <string>
+
+#include "oort/matching/rejection.hpp"
 
 namespace oort {
 
-/// What became of the attempts to close loops. Every attempt is counted once: accepted, or refused for one reason.
+/// What became of the attempts to close loops. Every attempt is counted once: accepted, or rejected.
 struct ClosureCounts {
   std::uint64_t tried = 0;
   std::uint64_t accepted = 0;
-  std::map<std::string, std::uint64_t> refused;  ///< by reason
+  RejectionCounts rejected;
 };
 
 /// What the last refinement did (refinement.hpp).

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -68,11 +67,11 @@ std::vector<Link> known_links(const Graph& graph) {
   return links;
 }
 
-std::string refusal(const ScanAlignment& alignment, double max_distance) {
-  if (alignment.pairs < kLeastPairs || alignment.share < kLeastShare) return "few_surfaces";
+Rejection rejection_of(const ScanAlignment& alignment, double max_distance) {
+  if (alignment.pairs < kLeastPairs || alignment.share < kLeastShare) return Rejection::kFewSurfaces;
   const bool far =
       alignment.correction.head<2>().norm() > max_distance || std::abs(alignment.correction.z()) > kMostTurn;
-  return far ? "far" : "";
+  return far ? Rejection::kFar : Rejection::kNone;
 }
 
 /// The links between scans at some poses, and how well the scans agree there.
@@ -92,8 +91,8 @@ ScanLinks link_scans(const std::vector<std::vector<SurfacePiece>>& pieces, const
     ++result.counts.tried;
     const Pose2 T_i_j = between(poses[i], poses[j]);
     const ScanAlignment alignment = align(pieces[i], pieces[j], T_i_j, max_distance);
-    if (const std::string reason = refusal(alignment, max_distance); !reason.empty()) {
-      ++result.counts.refused[reason];
+    if (const Rejection rejection = rejection_of(alignment, max_distance); rejection != Rejection::kNone) {
+      ++result.counts.rejected[rejection];
       continue;
     }
     ++result.counts.accepted;

@@ -192,7 +192,8 @@ ScanResult Mapper::result(ScanOutcome outcome) const {
   result.tracking = tracking_state_;
   result.outcome = outcome;
   result.hit_fraction = scan.tracked.hit_fraction;
-  result.status = scan.tracked.status;
+  result.was_tracked = scan.was_tracked;
+  result.rejection = scan.tracked.rejection;
   if (!local_.has_pose()) return result;
   result.node_id = local_.newest_node();
   result.T_node_sensor = local_.T_newest_sensor();

@@ -30,7 +30,8 @@ struct ScanResult {
   /// Of T_node_sensor as matched, along the axes of the map; zero where the scan was not matched.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double hit_fraction = 0.0;
-  std::string status;  ///< what the scan matcher said; empty if it was not asked
+  bool was_tracked = false;                      ///< whether the scan matcher was asked
+  Rejection rejection = Rejection::kNotMatched;  ///< of its match by itself
   TrackingState tracking = TrackingState::kTracking;
   bool corrected = false;  ///< whether closures or a solution took effect with this scan
 };

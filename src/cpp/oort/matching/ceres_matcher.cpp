@@ -56,7 +56,7 @@ ScanMatch CeresMatcher::match(const Points& points, const Pose2& guess, const Ei
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(p.ceres_solver_options), &problem, &summary);
 
-  match.status = MatchStatus::kOk;
+  match.rejection = Rejection::kNone;
   match.evaluations = summary.num_successful_steps + summary.num_unsuccessful_steps;
   match.pose = {pose[0], pose[1], wrap_angle(pose[2])};
   score_pose(grid_, points, match);

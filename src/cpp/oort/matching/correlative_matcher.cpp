@@ -77,7 +77,7 @@ ScanMatch CorrelativeMatcher::match(const Points& points, const Pose2& guess) co
       }
     }
   }
-  match.status = MatchStatus::kOk;
+  match.rejection = Rejection::kNone;
   match.evaluations = static_cast<long>(candidates.size());
   match.pose = {guess.x + best->offset.x(), guess.y + best->offset.y(), wrap_angle(guess.theta + best->offset.z())};
   score_pose(grid_, points, match);

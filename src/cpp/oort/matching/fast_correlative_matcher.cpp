@@ -165,7 +165,7 @@ ScanMatch FastCorrelativeMatcher::match(const Points& points, const Pose2& guess
   const std::vector<Box> roots = search.roots();
   search.branch(roots, roots.size(), grids_->depth() - 1);
   match.evaluations = search.evaluations;
-  match.status = search.found ? MatchStatus::kOk : MatchStatus::kLowScore;
+  match.rejection = search.found ? Rejection::kNone : Rejection::kLowScore;
   if (!search.found) return match;
   match.pose = {guess.x + search.best.dx * limits.resolution, guess.y + search.best.dy * limits.resolution,
                 wrap_angle(guess.theta + headings[search.best.heading].offset)};

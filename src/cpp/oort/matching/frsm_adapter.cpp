@@ -6,6 +6,26 @@
 
 namespace oort {
 
+Rejection rejection_of(frsm::Status status) {
+  switch (status) {
+    case frsm::Status::kOk:
+      return Rejection::kNone;
+    case frsm::Status::kEmptyScan:
+      return Rejection::kEmptyScan;
+    case frsm::Status::kTooFewPoints:
+      return Rejection::kTooFewPoints;
+    case frsm::Status::kNoOverlap:
+      return Rejection::kNoOverlap;
+    case frsm::Status::kSaturated:
+      return Rejection::kSaturated;
+    case frsm::Status::kDegenerate:
+      return Rejection::kDegenerate;
+    case frsm::Status::kLowHits:
+      return Rejection::kLowHits;
+  }
+  return Rejection::kNotMatched;
+}
+
 frsm::Points returns_of(const PointCloud& cloud) {
   frsm::Points points;
   points.reserve(cloud.points.size());

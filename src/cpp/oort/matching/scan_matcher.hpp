@@ -2,24 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <string_view>
 
 #include "oort/geometry/points.hpp"
 #include "oort/geometry/pose2.hpp"
+#include "oort/matching/rejection.hpp"
 
 namespace oort {
 
-enum class MatchStatus {
-  kOk,
-  kEmptyScan,  ///< no points: the pose is the guess
-  kLowScore,   ///< nothing within the window scores as much as asked for: the pose is the guess
-};
-
-std::string_view to_string(MatchStatus status);
-
 /// Where a scan fits the grid that a matcher was made with, and how well.
 struct ScanMatch {
-  MatchStatus status = MatchStatus::kEmptyScan;
+  /// kNone; or kGridEmptyScan without points, kLowScore where nothing within the window scores as much as asked for:
+  /// then the pose is the guess.
+  Rejection rejection = Rejection::kGridEmptyScan;
   Pose2 pose;                 ///< T_grid_sensor
   double score = 0.0;         ///< mean probability of the cells that the points lie in, unknown ones counting 0.1
   double hit_fraction = 0.0;  ///< share of the points in cells that are rather occupied than free
@@ -30,7 +24,7 @@ struct ScanMatch {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   long evaluations = 0;  ///< poses (or bounds on poses) that were scored, or steps of the solver
 
-  bool usable() const { return status == MatchStatus::kOk; }
+  bool usable() const { return rejection == Rejection::kNone; }
 };
 
 /// Finds where a scan fits a grid. Pure: the same call gives the same result.
