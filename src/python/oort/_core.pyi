@@ -293,11 +293,17 @@ class ScanResult:
     def tracking(self) -> str:
         """How well the sensor's place is known: tracking, uncertain or lost."""
     @property
-    def tried_closures(self) -> bool:
-        """Whether the scan brought work on loop closures."""
+    def T_map_base(self) -> _Pose:  # noqa: N802
+        """The base's pose (x, y, theta) in the map when the scan came."""
     @property
-    def solved(self) -> bool:
-        """Whether the graph was solved."""
+    def T_map_odom(self) -> _Pose:  # noqa: N802
+        """Where odometry's frame was in the map when the scan came."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Of the pose as matched (x, y, theta, along the axes of the map), 3x3; zero if it was not matched."""
+    @property
+    def corrected(self) -> bool:
+        """Whether closures or a solution took effect with the scan."""
 
 class Mapper:
     """Turns scans with odometry into a map. Not thread-safe."""

@@ -21,10 +21,10 @@ constexpr double kLeastDiagonal = 1e-6;
 constexpr double kRelativeTolerance = 1e-7;
 
 // What solving costs in units of work, measured on graphs of 1,000 to 12,000 nodes.
-constexpr double kWorkPerPattern = 0.6;    // for each link and variable, of ordering and finding the pattern
-constexpr double kWorkPerLink = 0.5;       // of linearising and of the cost
-constexpr double kWorkPerBlock = 0.03;     // of the factor, in both substitutions
-constexpr double kWorkPerProduct = 0.015;  // of two blocks, in the factorisation
+constexpr double kWorkPerPattern = 0.4;   // for each link and variable, of ordering and finding the pattern
+constexpr double kWorkPerLink = 0.3;      // of linearising and of the cost
+constexpr double kWorkPerBlock = 0.02;    // of the factor, in both substitutions
+constexpr double kWorkPerProduct = 0.01;  // of two blocks, in the factorisation
 
 }  // namespace
 

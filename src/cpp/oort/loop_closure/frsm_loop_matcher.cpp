@@ -19,10 +19,10 @@ constexpr double kFineThetaSteps = 4.0;
 constexpr std::size_t kScansDrawnAtOnce = 8;
 
 // Units of work.
-constexpr double kWorkPerPointDrawn = 1.0;
+constexpr double kWorkPerPointDrawn = 0.08;
 constexpr double kWorkPerPoint = 0.05;  // of one pass of the polish
 constexpr double kPolishPasses = 20;
-constexpr double kWorkPerLookup = 0.0012;  // of one cell of a table
+constexpr double kWorkPerLookup = 0.003;  // of one cell of a table
 
 frsm::Points thinned(const frsm::Points& points, std::size_t count) {
   if (count == 0 || points.size() <= count) return points;

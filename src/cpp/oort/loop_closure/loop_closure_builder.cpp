@@ -27,8 +27,8 @@ constexpr double kScanSigmaTheta = 0.008;  // [rad]
 constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015, 8.0};
 
 // Units of work: of looking for candidates, for each node and edge of the map; of the facing test, for each return.
-constexpr double kWorkPerNode = 0.8;
-constexpr double kWorkPerEdge = 0.3;
+constexpr double kWorkPerNode = 0.35;
+constexpr double kWorkPerEdge = 0.12;
 constexpr double kWorkPerFacingReturn = 0.4;
 
 // A closure that moves the newest node by more waits for others that say the same.
@@ -259,8 +259,8 @@ LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chain
   const Pose2 moved = between(expected, found.T_candidate_query);
   found.rejection =
       gate(search_.match_filter, found.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
-              is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
-              std::abs(expected.theta) >= search_.match_filter.opposite_dir_threshold);
+           is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
+           std::abs(expected.theta) >= search_.match_filter.opposite_dir_threshold);
   if (found.rejection != Rejection::kNone) return found;
   charge(meter, kWorkPerFacingReturn * static_cast<double>(map.clouds[query].points.size()) *
                     (parameters_.candidate_search.submap_neighborhood_size + 1));
