@@ -15,7 +15,7 @@ import argparse
 import numpy as np
 from numpy.typing import NDArray
 
-from oort.evaluate import evaluate_relations, relation_errors
+from oort.evaluation.trajectories import evaluate_relations, relation_errors
 from oort.export.tum import read_tum
 
 

@@ -35,8 +35,8 @@ from false_closures import (
     squared_distance,
 )
 from oort import _core
+from oort.evaluation.graph import position_rmse
 from oort.export.g2o import PoseGraph, read_g2o
-from oort.graph import position_rmse
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = Path(os.environ.get("OORT_DATASETS", ROOT / "../shared/datasets")) / "posegraphs"

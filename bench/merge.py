@@ -22,12 +22,12 @@ import numpy as np
 
 from accuracy import describe
 from oort import InputError, Map, Parameters, Session, read_parameters
-from oort.evaluate import alignment, evaluate_relations
+from oort.evaluation.trajectories import alignment, evaluate_relations
 from oort.export.tum import Trajectory
-from oort.merge import Merged, merge_maps
+from oort.offline.merge import Merged, merge_maps
+from oort.offline.trajectory import TrajectoryRecorder
 from oort.poses import Array, compose
 from oort.recording import Recording, Scan, open_recording
-from oort.trajectory import TrajectoryRecorder
 from relocalisation import Homes
 from trials.closures import ON, false_closures
 from trials.drives import Recipe

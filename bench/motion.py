@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from oort import Parameters, Session, read_parameters
+from oort.offline.trajectory import TrajectoryRecorder
 from oort.poses import Array, between, compose
 from oort.recording import open_recording
 from oort.simulate import Sensor, SimulationConfig, simulate_drive
 from oort.simulate.bag import write_bag
-from oort.trajectory import TrajectoryRecorder
 
 Figures = tuple[float, float, float]
 """RMSE of the position of the map's trajectory [m], of its turn over a second [degrees], of odometry's position [m]."""

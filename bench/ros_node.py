@@ -30,11 +30,11 @@ from std_msgs.msg import Int64
 from tf2_msgs.msg import TFMessage
 
 from accuracy import describe
-from oort.ros.messages import FastGrid
+from node.client import Client, Heard, figures, until
+from node.running import Core, Node, start_core
+from oort.node.messages import FastGrid
 from oort.simulate import SimulationConfig, simulate_drive
 from oort.simulate.bag import write_bag
-from ros.client import Client, Heard, figures, until
-from ros.running import Core, Node, start_core
 
 _TICKS = os.sysconf("SC_CLK_TCK")  # [1/s]
 _IDLE = 10.0  # [s] of watching the node before it maps
@@ -134,7 +134,7 @@ def spread(samples: Sequence[float]) -> str:
 def run(core: Core, folder: Path, seed: int, seconds: float) -> Iterator[tuple[str, str]]:
     """Plays a drive to the node; what was measured, as names and values."""
     write_bag(simulate_drive(seed, SimulationConfig(minutes=seconds / 60.0)), folder / "home.bag")
-    node = Node(core, "oort_slam", [sys.executable, "-m", "oort.ros"], folder / "node.log", folder)
+    node = Node(core, "oort_slam", [sys.executable, "-m", "oort.node"], folder / "node.log", folder)
     pid = node.process.pid
     rospy.init_node("bench", disable_signals=True)
     try:

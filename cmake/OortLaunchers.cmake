@@ -4,7 +4,7 @@
 # RESULT to their paths. PYTHON is the interpreter that they run, as the shell is to read it.
 function(oort_launchers template python result)
   set(paths)
-  foreach(entry oort_ros=oort.ros oort_localizer=oort.ros.localizer oort_bag=oort.ros.bag oort_conv=oort.render)
+  foreach(entry oort_ros=oort.node oort_localizer=oort.node.localizer oort_bag=oort.cli.oort_bag oort_conv=oort.render)
     string(REGEX MATCH "^(.*)=(.*)$" entry ${entry})
     set(program ${CMAKE_MATCH_1})
     set(module ${CMAKE_MATCH_2})

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from oort import Map
 from oort._core import OptimizerOptions, optimize_graph
-from oort.evaluate import alignment
+from oort.evaluation.trajectories import alignment
 from oort.poses import Array, between, compose
 from trials.truth import CHI2_99, edge_errors, nees
 

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from oort import Parameters
-from oort.evaluate import AteResult, evaluate_ate, evaluate_relations
+from oort.evaluation.trajectories import AteResult, evaluate_ate, evaluate_relations
 from oort.export import Trajectory
+from oort.offline.results import write_results
 from oort.poses import Array
 from oort.recording import open_recording
-from oort.results import write_results
 from oort.simulate import Drive
 from trials.closures import closure_figures
 from trials.drives import DriveStore, Recipe, events_of, recording_of

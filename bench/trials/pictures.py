@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from oort import render_map
-from oort.evaluate import alignment
+from oort.evaluation.trajectories import alignment
 from oort.poses import Array, compose
 from oort.simulate import Drive
 from oort.simulate.planar import transform

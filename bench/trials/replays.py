@@ -13,13 +13,13 @@ import numpy as np
 
 from oort import Parameters
 from oort.events import Event
+from oort.offline.results import Drive
+from oort.offline.schedule import TimedSchedule
+from oort.offline.trajectory import TrajectoryRecorder
 from oort.poses import Array, between, compose
 from oort.recording import Recording
-from oort.report import Stopwatch
-from oort.results import Drive
-from oort.schedule import TimedSchedule
+from oort.report.stopwatch import Stopwatch
 from oort.session import Session
-from oort.trajectory import TrajectoryRecorder
 
 LIMIT = 5.0  # ms that a scan may cost outside the solver
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from live_rig import Recorder
+from helpers.live_rig import Recorder
 from oort import Parameters
 from oort.live import LiveSession
 from oort.simulate import Drive, simulate_drive

@@ -9,7 +9,7 @@ import pytest
 
 from conftest import ROOT
 from oort import Parameters, Session, StateError
-from oort.cli import main
+from oort.cli.main import main
 from oort.simulate import SimulationConfig, simulate_drive
 from oort.simulate.writers import write_drive
 

@@ -9,16 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers.scenes import room_scan
 from oort import InputError, Map, Parameters, Session, load_map, save_map
+from oort.cli.localize import main
+from oort.cli.replay import main as replay
 from oort.export.tum import read_tum
-from oort.localization import find_pose, find_start, follow, start_pose
-from oort.localize import main
+from oort.localization import find_pose, find_start, start_pose
+from oort.offline.follow import follow
 from oort.poses import Array, between, compose
 from oort.recording import Recording, Scan, open_recording
-from oort.replay import main as replay
 from oort.simulate import Drive, SimulationConfig, simulate_drive
 from oort.simulate.writers import write_carmen
-from scenes import room_scan
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from oort import load_map
-from oort.evaluate import RelationsResult, evaluate_relations
+from oort.cli.replay import main
+from oort.evaluation.trajectories import RelationsResult, evaluate_relations
 from oort.export import read_map_server
 from oort.export.tum import Trajectory, read_tum
-from oort.replay import main
 
 
 def replay(recording: Path, out: Path, *options: object) -> tuple[dict[str, Any], Trajectory]:

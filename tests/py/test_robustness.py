@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers.recording_files import flaser
+from helpers.scenes import room_scan
 from oort import InputError, Parameters, Session, StateError, load_map
+from oort.cli.replay import main
 from oort.export.tum import read_tum
-from oort.replay import main
-from recording_files import flaser
-from scenes import room_scan
 from test_session import drive_around
 
 

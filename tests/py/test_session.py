@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers.scenes import room_scan
 from oort import InputError, MapFileError, Parameters, Session, StateError, load_map
 from oort.recording import Scan
-from scenes import room_scan
 
 
 def drive_around(session: Session, start: float = 0.0, scans: int = 60) -> None:

@@ -143,8 +143,9 @@ void bind_scan_result(py::module_& m) {
       .def_property_readonly(
           "T_map_odom", [](const ScanResult& r) { return tuple_of(r.T_map_odom); },
           "Where odometry's frame was in the map when the scan came.")
-      .def_readonly("covariance", &ScanResult::covariance,
-                    "Of the pose as matched (x, y, theta, along the axes of the map), 3x3; zero if it was not matched.")
+      .def_property_readonly(
+          "covariance", [](const ScanResult& r) -> py::array_t<double> { return py::cast(r.covariance); },
+          "Of the pose as matched (x, y, theta, along the axes of the map), 3x3; zero if it was not matched.")
       .def_readonly("corrected", &ScanResult::corrected, "Whether closures or a solution took effect with the scan.");
 }
 

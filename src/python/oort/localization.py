@@ -1,10 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""Finds a robot on a saved map, and follows it there, without changing the map."""
+"""Finds a robot on a saved map, without changing the map."""
 
-import time
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,20 +22,16 @@ from oort.errors import InputError
 from oort.poses import between, compose
 from oort.recording import Pose, Recording, Scan
 from oort.recording.motion import Placement
-from oort.report import Stopwatch
 
 __all__ = [
     "Hypothesis",
-    "LocalizedDrive",
     "Localizer",
     "PlacedScan",
     "ReferenceMap",
     "Relocalization",
     "Relocalizer",
-    "Stretch",
     "find_pose",
     "find_start",
-    "follow",
     "start_covariance",
     "start_pose",
 ]
@@ -94,75 +88,6 @@ def start_pose(map_: Map, parameters: Parameters, start: str) -> Pose:
 def start_covariance(position: float = 0.15, heading: float = 0.15) -> NDArray[np.float64]:
     """Covariance (3, 3) of a pose that is known to about so many metres and radians (standard deviations)."""
     return np.diag([position**2, position**2, heading**2])
-
-
-@dataclass(frozen=True, slots=True)
-class Stretch:
-    """Consecutive scans in one state of the localiser."""
-
-    state: str
-    begin: str
-    """stamp of the first scan [s]"""
-    end: str
-    """stamp of the last scan [s]"""
-    scans: int
-
-
-@dataclass
-class LocalizedDrive:
-    """A recorded drive, followed on a map. The lists have an entry for each scan whose pose is known."""
-
-    recording: Recording
-    localizer: Localizer
-    watch: Stopwatch = field(default_factory=Stopwatch)
-    stamps: list[str] = field(default_factory=list)
-    base_poses: list[Pose] = field(default_factory=list)
-    """T_map_base"""
-    deviations: list[float] = field(default_factory=list)
-    """largest standard deviation of the position [m]"""
-    states: list[str] = field(default_factory=list)
-    stretches: list[Stretch] = field(default_factory=list)
-    """of all scans, those without a pose too"""
-    recorded_seconds: float = 0.0
-
-
-def follow(
-    recording: Recording, scans: Iterable[Scan], map_: Map, parameters: Parameters, start: Pose | None = None
-) -> LocalizedDrive:
-    """Follows the scans of a recording on a map, from about a pose T_map_sensor, or from a search of the whole map.
-
-    Raises InputError if there is no scan, or the map is empty or contradicts itself.
-    """
-    localizer = Localizer(ReferenceMap(map_, parameters), parameters, recording.sensor_on_base)
-    if start is not None:
-        localizer.start_at(start, start_covariance())
-    drive = LocalizedDrive(recording, localizer)
-    times: list[float] = []
-    for scan in scans:
-        started = time.perf_counter()
-        _add(localizer, scan)
-        drive.watch.scan_seconds.append(time.perf_counter() - started)
-        times.append(scan.time)
-        _note(drive, scan)
-    if not times:
-        raise InputError(f"{recording.name}: no scan to localise")
-    drive.recorded_seconds = max(times) - min(times)
-    return drive
-
-
-def _note(drive: LocalizedDrive, scan: Scan) -> None:
-    localizer = drive.localizer
-    state = localizer.state
-    last = drive.stretches[-1] if drive.stretches else None
-    if last is not None and last.state == state:
-        drive.stretches[-1] = Stretch(state, last.begin, scan.stamp, last.scans + 1)
-    else:
-        drive.stretches.append(Stretch(state, scan.stamp, scan.stamp, 1))
-    if localizer.T_map_odom is not None:
-        drive.stamps.append(scan.stamp)
-        drive.base_poses.append(_pose(compose(localizer.T_map_odom, scan.odometry)))
-        drive.deviations.append(float(np.sqrt(np.linalg.eigvalsh(localizer.covariance[:2, :2])[-1])))
-        drive.states.append(state)
 
 
 def _add(localizer: Localizer, scan: Scan) -> None:

@@ -6,13 +6,11 @@ The table is the engine's (src/cpp/oort/parameters). ``python -m oort.parameters
 """
 
 from oort._core import ParameterEntry, Parameters, parameter_table
-from oort.parameters.command import main
 from oort.parameters.reader import packaged_parameters, packaged_path, read_parameters
 
 __all__ = [
     "ParameterEntry",
     "Parameters",
-    "main",
     "packaged_parameters",
     "packaged_path",
     "parameter_table",

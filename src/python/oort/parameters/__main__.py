@@ -4,6 +4,6 @@
 
 import sys
 
-from oort.parameters.command import main
+from oort.cli.parameters import main
 
 sys.exit(main())

@@ -4,6 +4,6 @@
 
 import sys
 
-from oort.simulate.command import main
+from oort.cli.simulate import main
 
 sys.exit(main())

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Compares trajectories with the truth: `python -m oort.evaluate relations TRAJ FILE` and `... ate TRAJ TRUTH`.
+
+`... autogenerate MAP FILE` makes relations from a solved map. Trajectories are of the robot's base, in the TUM format.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from oort._core import load_map
+from oort.errors import OortError
+from oort.evaluation.ground_truth import RelationLimits, autogenerate_relations, write_relations
+from oort.evaluation.trajectories import AteResult, RelationsResult, evaluate_ate, evaluate_relations
+from oort.export import read_tum
+
+
+def _format(result: RelationsResult | AteResult) -> str:
+    """The result as a few lines for people."""
+    if isinstance(result, AteResult):
+        return (
+            f"poses        {result.n} ({result.missing} without truth)\n"
+            f"position     rmse {result.position_rmse:.4f} m  max {result.position_max:.4f} m\n"
+            f"heading      rmse {result.heading_rmse:.4f} deg"
+        )
+    r = result
+    return (
+        f"relations    {r.n} ({r.missing} missing)\n"
+        f"translation  mean {r.translation_mean:.4f} m  std {r.translation_std:.4f} m  max {r.translation_max:.4f} m\n"
+        f"rotation     mean {r.rotation_mean:.4f} deg  std {r.rotation_std:.4f} deg  max {r.rotation_max:.4f} deg\n"
+        f"squared      mean {r.squared_translation_mean:.6f} m^2  std {r.squared_translation_std:.6f} m^2\n"
+        f"squared      mean {r.squared_rotation_mean:.4f} deg^2  std {r.squared_rotation_std:.4f} deg^2"
+    )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m oort.evaluate", description="Compares trajectories with the truth."
+    )
+    commands = parser.add_subparsers(dest="command", required=True)
+    relations = commands.add_parser("relations", help="errors of relative poses (Kuemmerle et al. 2009)")
+    ate = commands.add_parser("ate", help="errors of poses after the best rigid alignment")
+    for command in (relations, ate):
+        command.add_argument("trajectory", metavar="TRAJ", help="the trajectory of the robot's base, in the TUM format")
+        command.add_argument("--json", action="store_true", help="print JSON")
+    relations.add_argument("reference", metavar="FILE", help="lines t1 t2 x y z roll pitch yaw")
+    relations.add_argument("--max-seconds", type=float, help="only relations over less than this time [s]")
+    ate.add_argument("reference", metavar="TRUTH", help="the true trajectory, in the TUM format")
+    autogenerate = commands.add_parser("autogenerate", help="relations from the closures of a solved map")
+    _add_limits(autogenerate)
+    return parser
+
+
+def _add_limits(command: argparse.ArgumentParser) -> None:
+    """The arguments of autogenerate."""
+    limits = RelationLimits()
+    command.add_argument("map", metavar="MAP", help="the saved map's path")
+    command.add_argument("reference", metavar="FILE", help="where the relations go")
+    command.add_argument(
+        "--min-covered-distance",
+        type=float,
+        default=limits.min_covered_distance,
+        metavar="M",
+        help="least way driven between the ends of a closure [m] (default %(default)s)",
+    )
+    command.add_argument(
+        "--outlier-threshold-meters",
+        type=float,
+        default=limits.outlier_threshold_meters,
+        metavar="M",
+        help="closures farther from the solution are left out (default %(default)s)",
+    )
+    command.add_argument(
+        "--outlier-threshold-radians",
+        type=float,
+        default=limits.outlier_threshold_radians,
+        metavar="RAD",
+        help="likewise (default %(default)s)",
+    )
+    command.add_argument(
+        "--sensor-on-base",
+        type=float,
+        nargs=3,
+        default=(0.0, 0.0, 0.0),
+        metavar=("X", "Y", "THETA"),
+        help="where the sensor sits on the base [m, rad] (default: at its origin)",
+    )
+
+
+def _autogenerate(arguments: argparse.Namespace) -> str:
+    """Writes the relations that the command line asks for; returns what to print. Raises OortError."""
+    limits = RelationLimits(
+        arguments.min_covered_distance, arguments.outlier_threshold_meters, arguments.outlier_threshold_radians
+    )
+    truth = autogenerate_relations(load_map(arguments.map), arguments.sensor_on_base, limits)
+    write_relations(arguments.reference, truth.relations)
+    return (
+        f"relations    {len(truth.relations)} of {truth.closures} closures\n"
+        f"left out     {truth.switched_off} switched off  {truth.too_short} too short  "
+        f"{truth.outliers} outliers  {truth.repeated} repeated"
+    )
+
+
+def _compare(arguments: argparse.Namespace) -> RelationsResult | AteResult:
+    trajectory = read_tum(arguments.trajectory)
+    if arguments.command == "relations":
+        return evaluate_relations(trajectory, arguments.reference, max_seconds=arguments.max_seconds)
+    return evaluate_ate(trajectory, read_tum(arguments.reference))
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
+    arguments = _parser().parse_args(argv)
+    try:
+        if arguments.command == "autogenerate":
+            print(_autogenerate(arguments))
+            return 0
+        result = _compare(arguments)
+    except OortError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print(json.dumps(asdict(result), indent=2) if arguments.json else _format(result))
+    return 0

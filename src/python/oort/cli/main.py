@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command ``oort``: one word for each tool."""
+
+import importlib
+import sys
+from collections.abc import Sequence
+
+_TOOLS = {
+    "replay": "map a recorded drive",
+    "localize": "follow a recorded drive on a saved map",
+    "render": "draw a saved map as pictures for map_server",
+    "merge": "join two saved maps of the same home",
+    "simulate": "make up a home and a drive through it",
+    "evaluate": "compare a trajectory with what is known to be true",
+    "graph": "solve a pose graph in the g2o format",
+    "migrate": "write a saved map in the newest format",
+    "parameters": "print the table of parameters",
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs one tool; exit code 2 for a wrong call."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or arguments[0] not in _TOOLS:
+        stream = sys.stdout if arguments[:1] in (["-h"], ["--help"]) else sys.stderr
+        print("usage: oort TOOL ...", *(f"  {name:<11}{what}" for name, what in _TOOLS.items()), sep="\n", file=stream)
+        return 0 if stream is sys.stdout else 2
+    module = importlib.import_module(f"oort.cli.{arguments[0]}")
+    result: int = module.main(arguments[1:])
+    return result

@@ -1,0 +1,33 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``oort render MAP PREFIX [PARAMS]`` or ``rosrun oort oort_conv``: draws a saved map as pictures for map_server."""
+
+import argparse
+from collections.abc import Sequence
+
+from oort.cli.tool import run_tool
+from oort.offline.render import render
+from oort.parameters import read_parameters
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort render",
+        description="Draws a saved map: PREFIX_map.png, and PREFIX_map_cleaned.png without speckle noise, each with "
+        "the .yaml that map_server reads. One pixel is one cell: 254 free, 0 occupied, 205 unknown.",
+    )
+    parser.add_argument("map", help="the map's path, with or without .map_capnp")
+    parser.add_argument("prefix", metavar="prefix", help="where the pictures go, for example maps/home")
+    parser.add_argument("params", nargs="?", help="parameters (default: the packaged params.json)")
+    return parser
+
+
+def _run(args: argparse.Namespace) -> None:
+    for line in render(args.map, args.prefix, read_parameters(args.params)):
+        print(line)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
+    args = _parser().parse_args(argv)
+    return run_tool("oort render", lambda: _run(args), args.map)

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``oort replay INPUT``: maps one recorded drive and writes all that came of it into a folder."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from oort._core import Parameters, load_map, normalise_map_path
+from oort.cli.recording_arguments import add_recording_arguments, recording_of
+from oort.cli.tool import add_pose_argument, parse_arguments, run_tool
+from oort.errors import InputError
+from oort.events import read_events
+from oort.localization import find_start
+from oort.offline.replay import ReplayOptions, replay
+from oort.offline.results import write_results
+from oort.parameters import read_parameters
+from oort.recording import Recording
+from oort.report.replay_report import format_table
+
+
+def replay_to_folder(
+    recording: Recording,
+    parameters: Parameters,
+    options: ReplayOptions,
+    out: str | None = None,
+    base: str | None = None,
+) -> None:
+    """Replays a recording, writes what came of it into the folder ``out`` and the map to the path ``base``.
+
+    They default to oort-out/<name of the recording> and ``out``/map. Unless quiet, the report is printed. Raises
+    OortError, also where the map to go on with would be overwritten.
+    """
+    folder = Path(out) if out else Path("oort-out") / recording.name
+    map_path = base or str(folder.absolute() / "map")
+    if options.resume and normalise_map_path(options.resume[0]) == normalise_map_path(map_path):
+        raise InputError(
+            f"{options.resume[0]}: resuming would overwrite this map; choose another place with --map or --out, or "
+            "work in another folder"
+        )
+    if not options.quiet:
+        for note in recording.notes:
+            print(f"note: {note}", file=sys.stderr)
+    report = write_results(replay(recording, parameters, options), folder, map_path)
+    if not options.quiet:
+        print(format_table(report))
+        names = "trajectory.tum map.pgm map.yaml map.png histograms.png graph.g2o report.json"
+        attempts = " closures.csv closures.png" if options.keep_attempts else ""
+        print(f"wrote {folder}: {names}{attempts}; map: {map_path}")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort replay",
+        description="Maps a recorded drive: a ROS 1 bag, a ROS 2 bag or MCAP, or a CARMEN log (.clf, also .gz, .bz2).",
+    )
+    parser.add_argument("input", help="the recording")
+    parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
+    add_recording_arguments(parser)
+    parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>)")
+    parser.add_argument("--map", metavar="BASE", help="base path of the saved map (default: DIR/map)")
+    parser.add_argument("--resume", metavar="BASE", help="a saved map to go on with")
+    add_pose_argument(parser, "--pose", "the sensor's pose in it at the start [m, rad]; searched for if not given")
+    parser.add_argument("--events", metavar="FILE", help="the service calls of the drive, a JSON list of t, call, args")
+    parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
+    parser.add_argument(
+        "--closures", action="store_true", help="also write closures.csv and .png: each attempt to close a loop"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    return parser
+
+
+def _run(args: argparse.Namespace) -> None:
+    parameters = read_parameters(args.params)
+    events = read_events(args.events) if args.events else []
+    recording = recording_of(args, parameters)
+    resume = None
+    if args.resume:
+        pose = tuple(args.pose) if args.pose else find_start(load_map(args.resume), parameters, recording)
+        resume = args.resume, pose
+    options = ReplayOptions(
+        events=events,
+        resume=resume,
+        until=args.until,
+        quiet=args.quiet,
+        keep_attempts=args.closures,
+    )
+    replay_to_folder(recording, parameters, options, args.out, args.map)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line tool; exit code 2 for an input or a call that cannot be used."""
+    parser = _parser()
+    args = parse_arguments(parser, argv)
+    if args.resume is None and args.pose is not None:
+        parser.error("--pose is where the robot starts on the map of --resume, which is missing")
+    return run_tool("oort replay", lambda: _run(args), args.input)

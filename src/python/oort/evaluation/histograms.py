@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""How well scans and closures matched, and how far a solved map's links are off: the histograms of report.json."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from oort._core import Map
+from oort.evaluation.graph import squared_errors
+from oort.export.chart import Panel
+
+HIT_EDGES = tuple(k / 20 for k in range(20))
+"""Lower limits of the bins of hit fractions. The last bin of a histogram is all from its limit on."""
+CHI2_EDGES = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+"""Likewise of chi^2: 7.8 is the 95 % limit of three degrees of freedom."""
+_SWITCHED_OFF = 0.5
+_ODOMETRY = 1  # the type of an edge
+_TITLES = {
+    ("hits", "scans"): "hit fraction of tracked scans",
+    ("hits", "closures"): "hit fraction of closures",
+    ("hits", "refused"): "hit fraction of refused closures",
+    ("chi2", "laser"): "chi2 of matched links",
+    ("chi2", "odometry"): "chi2 of odometry links",
+    ("chi2", "closures"): "chi2 of closures that are on",
+    ("chi2", "switched_off"): "chi2 of closures that are off",
+}
+
+
+def make_histograms(
+    map_: Map, scan_hits: Sequence[float], refused_hits: Sequence[float] = ()
+) -> dict[str, dict[str, list[float]]]:
+    """Counts by hit fraction and by chi^2 (squared Mahalanobis distance), as report.json has them.
+
+    `scan_hits` are the hit fractions of the scans that were matched, `refused_hits` those of closures that were refused
+    though there was a match. The links' chi^2 are at the map's poses; a switch
+    takes nothing from it.
+    """
+    chain, closures = map_.edges, map_.switchable_edges
+    chain_chi2, closure_chi2 = _chi_squared(map_, chain), _chi_squared(map_, closures)
+    odometry, off = chain["type"] == _ODOMETRY, closures["switch"] < _SWITCHED_OFF
+    return {
+        "hits": {
+            "edges": list(HIT_EDGES),
+            "scans": _count(scan_hits, HIT_EDGES),
+            "closures": _count(map_.loop_results["hit_fraction"], HIT_EDGES),
+            "refused": _count(refused_hits, HIT_EDGES),
+        },
+        "chi2": {
+            "edges": list(CHI2_EDGES),
+            "laser": _count(chain_chi2[~odometry], CHI2_EDGES),
+            "odometry": _count(chain_chi2[odometry], CHI2_EDGES),
+            "closures": _count(closure_chi2[~off], CHI2_EDGES),
+            "switched_off": _count(closure_chi2[off], CHI2_EDGES),
+        },
+    }
+
+
+def panels(histograms: dict[str, dict[str, list[float]]]) -> list[Panel]:
+    """What to draw of them: those that count anything."""
+    return [
+        Panel(title, histograms[quantity]["edges"], histograms[quantity][kind])
+        for (quantity, kind), title in _TITLES.items()
+        if any(histograms[quantity][kind])
+    ]
+
+
+def _chi_squared(map_: Map, edges: dict[str, NDArray[Any]]) -> NDArray[np.float64]:
+    poses = map_.node_poses
+    return squared_errors(poses[edges["i"]], poses[edges["j"]], edges["pose"], edges["covariance"])
+
+
+def _count(values: ArrayLike, edges: Sequence[float]) -> list[float]:
+    """How many values are at or above each limit and below the next."""
+    bins = np.searchsorted(edges, np.asarray(values, dtype=np.float64), side="right") - 1
+    counts: list[float] = np.bincount(np.clip(bins, 0, None), minlength=len(edges)).tolist()
+    return counts

@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The messages of one laser as scans with odometry, once the transforms that they need have come."""
+
+from collections.abc import Callable
+from functools import partial
+
+import rospy
+from sensor_msgs.msg import LaserScan
+
+from oort.live import UnusableScanError
+from oort.live.inbox import Resolve
+from oort.node.messages import to_scan
+from oort.node.running import COMPLAIN
+from oort.node.transforms import Transforms
+from oort.recording import Pose, Scan
+from oort.recording.laser_scan import seconds
+from oort.recording.motion import SNAPSHOT, beam_span
+
+
+class Laser:
+    """Takes the scans of the laser whose scan can be used first, and refuses those of others."""
+
+    def __init__(self, transforms: Transforms, compensates_motion: bool, found: Callable[[str, Pose], None]) -> None:
+        """``found`` is told of the laser: its frame and T_base_sensor, before its first scan.
+
+        ``compensates_motion``: whether a scan waits for the odometry at its last beam, if it took time.
+        """
+        self._transforms = transforms
+        self._compensates_motion = compensates_motion
+        self._found = found
+        self.frame = ""
+        """its frame, once it is known"""
+
+    def resolve_later(self, message: LaserScan, sensor_frame: str, arrived: float) -> tuple[Resolve, Resolve]:
+        """What makes a scan of a message that arrived at a monotonic time [s], when it is its turn.
+
+        The second does so of what is known, when no more will come.
+        """
+        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+        span = self._span(message)
+
+        def resolve(last_resort: bool = False) -> Scan | None:
+            if not message.ranges:
+                raise UnusableScanError("without readings")
+            if self.frame and sensor_frame != self.frame:
+                raise UnusableScanError("in another laser's frame")
+            mount = self._transforms.mount(sensor_frame)
+            placement = None if mount is None else self._transforms.place(stamp, arrived, span, last_resort)
+            if mount is None or placement is None:
+                return None
+            if not self.frame:
+                self._found(sensor_frame, mount.sensor_on_base)
+                self.frame = sensor_frame
+            return to_scan(message, placement, mount.upside_down)
+
+        return resolve, partial(resolve, last_resort=True)
+
+    def awaited(self, sensor_frame: str, expected: str) -> str:
+        """The frame whose scans are used or, before one could be, wait: ``expected``, unless they come in another."""
+        if self.frame or sensor_frame == expected:
+            return self.frame or expected
+        rospy.logwarn_once(
+            "the scans are in frame %s, not in the sensor_frame %s of the parameters; using %s",
+            sensor_frame,
+            expected,
+            sensor_frame,
+        )
+        return sensor_frame
+
+    def _span(self, message: LaserScan) -> tuple[float, float]:
+        span = beam_span(len(message.ranges), message.time_increment) if self._compensates_motion else SNAPSHOT
+        if span is None:
+            rospy.logwarn_throttle(
+                COMPLAIN,
+                f"a time_increment of {message.time_increment} s cannot be: the beams are taken as measured at once",
+            )
+        return span or SNAPSHOT

@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Joins two saved maps of the same home into one."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from oort._core import (
+    Map,
+    Merged,
+    Parameters,
+    load_map,
+    merge_maps,
+    normalise_map_path,
+    render_map,
+    save_map,
+)
+from oort.errors import InputError
+from oort.export import write_picture
+from oort.poses import compose
+from oort.recording import Pose
+
+__all__ = ["Merged", "merge", "merge_maps"]
+
+_FOUND_BY = {"given": "where --at says", "dock": "at the dock", "search": "by a search of the whole map"}
+_SWITCHED_OFF = 0.5
+"""A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
+
+
+def merge(first: str, second: str, target: str, parameters: Parameters, at: Pose | None = None) -> Iterator[str]:
+    """Joins the map at a path with another and saves it, with a picture beside it; yields what to print on the way.
+
+    ``at`` is about where the second map's origin lies on the first [m, rad]; found if not given. Raises InputError if
+    two of the paths are of the same map, MapFileError, what merge_maps() raises, and at last, with the map saved and
+    all told, OortError if the picture cannot be written.
+    """
+    paths = [normalise_map_path(path) for path in (first, second, target)]
+    if paths[0] == paths[1]:
+        raise InputError(f"{first}: both maps are the same one; give two maps of different drives")
+    if paths[2] in paths[:2]:
+        raise InputError(f"{target}: the new map would replace one of the two; choose another place")
+    maps = load_map(first), load_map(second)
+    yield f"{first}: {len(maps[0])} nodes"
+    yield f"{second}: {len(maps[1])} nodes"
+    yield "looking for where the second map lies on the first, and for closures across"
+    merged = merge_maps(*maps, parameters, at)
+    map_ = merged.map
+    save_map(target, map_)
+    yield from _told(merged)
+    yield f"{target}: {len(map_)} nodes"
+    if _draw(f"{paths[2]}.png", merged, map_, parameters):
+        yield f"wrote {paths[2]}.png"
+
+
+def _told(merged: Merged) -> list[str]:
+    x, y, theta = merged.T_a_b
+    closures = merged.closures
+    refused = ", ".join(f"{why} {n}" for why, n in sorted(closures["refused"].items()) if n)
+    lines = [
+        f"the second map's origin was found at x {x:.2f} m, y {y:.2f} m, theta {theta:.3f} rad of the first, "
+        f"{_FOUND_BY[merged.found_by]}: of {merged.views} views {merged.views_that_fit} fit there, "
+        f"{merged.views_that_contradict} contradict",
+        f"closures across: {closures['tried']} tried, {closures['accepted']} accepted, {merged.closures_kept} kept"
+        + (f"; refused: {refused}" if refused else ""),
+    ]
+    lines += [
+        f"place {space}/{id}: the first map's is kept; the second's lies {distance:.2f} m from it"
+        for space, id, distance in merged.dropped
+    ]
+    return lines
+
+
+def _draw(path: str, merged: Merged, map_: Map, parameters: Parameters) -> bool:
+    """The map with the second one's way, and the closures across; False if there is nothing to draw."""
+    grid = render_map(map_, parameters)[0]
+    if not grid.cells.size:
+        return False
+    edges, poses = map_.switchable_edges, map_.node_poses
+    across = (edges["i"] < merged.first_node_b) != (edges["j"] < merged.first_node_b)
+    ends = np.stack([poses[edges["i"], :2], poses[edges["j"], :2]], axis=1)
+    on = edges["switch"] >= _SWITCHED_OFF
+    places = [(f"{space}/{id}", compose(poses[node], pose).tolist()) for space, id, node, pose in map_.locations]
+    write_picture(
+        path,
+        grid.cells,
+        grid.resolution,
+        (*grid.origin, 0.0),
+        trajectory=poses[merged.first_node_b :],
+        accepted=ends[across & on],
+        rejected=ends[across & ~on],
+        locations=[(name, (x, y, theta)) for name, (x, y, theta) in places],
+    )
+    return True

@@ -1,0 +1,29 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Signs of life while a recording is worked through."""
+
+import sys
+from collections.abc import Iterator
+
+from tqdm import tqdm
+
+from oort.recording import Recording, Scan
+
+
+def scans_with_progress(recording: Recording, quiet: bool) -> Iterator[Scan]:
+    """The scans of a recording, with signs of life on standard error unless quiet."""
+    return with_progress(recording.scans(), recording, quiet)
+
+
+def with_progress(scans: Iterator[Scan], recording: Recording, quiet: bool) -> Iterator[Scan]:
+    """Passes scans on with signs of life on standard error: a bar on a terminal, else a plain line now and then."""
+    if quiet:
+        yield from scans
+    elif sys.stderr.isatty():
+        yield from tqdm(scans, total=recording.num_scans, desc=recording.name, unit=" scans")
+    else:
+        step = max(1, recording.num_scans // 10)
+        for number, scan in enumerate(scans, start=1):
+            yield scan
+            if number % step == 0:
+                print(f"{recording.name}: {number} of {recording.num_scans} scans", file=sys.stderr)

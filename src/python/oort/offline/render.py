@@ -1,0 +1,22 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Draws a saved map as pictures for map_server."""
+
+from collections.abc import Iterator
+
+from oort._core import Parameters, load_map, render_map
+from oort.errors import InputError
+from oort.export import write_map_server
+
+
+def render(map_path: str, prefix: str, parameters: Parameters) -> Iterator[str]:
+    """Writes PREFIX_map and PREFIX_map_cleaned, each .png and .yaml; yields the names of each pair.
+
+    Raises MapFileError, InputError if there is nothing to draw, and OortError if a file cannot be written.
+    """
+    for grid, name in zip(render_map(load_map(map_path), parameters), ("map", "map_cleaned"), strict=True):
+        if not grid.cells.size:
+            raise InputError(f"{map_path}: there is nothing to draw, for no scan of this map has a return")
+        base = f"{prefix}_{name}"
+        write_map_server(base, grid.cells, grid.resolution, (*grid.origin, 0.0), image_format="png")
+        yield f"{base}.png {base}.yaml"

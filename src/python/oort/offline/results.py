@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a replay leaves in its folder."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from oort._core import Map, Mapper, OccupancyGrid, Parameters, render_map, save_map
+from oort.evaluation.attempts import judge_attempts, write_attempts
+from oort.evaluation.histograms import make_histograms, panels
+from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
+from oort.export.chart import write_chart
+from oort.export.files import write_atomically
+from oort.offline.trajectory import TrajectoryRecorder
+from oort.recording import Recording
+from oort.report.replay_report import make_report
+from oort.report.stopwatch import Stopwatch
+from oort.session import Session
+
+_SWITCHED_OFF = 0.5
+"""A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A replayed drive."""
+
+    recording: Recording
+    parameters: Parameters
+    session: Session
+    recorder: TrajectoryRecorder
+    watch: Stopwatch
+    recorded_seconds: float
+    keep_attempts: bool = False
+    """whether to tell of each attempt to close a loop"""
+    scan_hits: Sequence[float] = ()
+    """hit fractions of the scans that were matched"""
+
+
+def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
+    """Writes the map, and trajectory.tum, map.pgm, .yaml and .png, histograms.png, graph.g2o, report.json to a folder.
+
+    If the drive keeps attempts, closures.csv and closures.png too. Returns the report. Raises OortError if something
+    cannot be written.
+    """
+    map_ = drive.session.map
+    out.mkdir(parents=True, exist_ok=True)
+    save_map(map_path, map_)
+    base_poses = drive.recorder.base_poses(map_)
+    grid = render_map(map_, drive.parameters)[0]
+    write_tum(out / "trajectory.tum", drive.recorder.stamps, base_poses)
+    write_g2o(out / "graph.g2o", _pose_graph(map_))
+    if grid.cells.size:
+        write_map_server(out / "map", grid.cells, grid.resolution, (*grid.origin, 0.0))
+        closures = _closure_ends(map_)
+        on = map_.switchable_edges["switch"] >= _SWITCHED_OFF
+        write_picture(
+            out / "map.png",
+            grid.cells,
+            grid.resolution,
+            (*grid.origin, 0.0),
+            trajectory=base_poses,
+            accepted=closures[on],
+            rejected=closures[~on],
+            locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
+        )
+        if drive.keep_attempts:
+            _write_attempts(out, drive.session.mapper, map_, grid)
+    attempts = drive.session.mapper.closure_attempts
+    rejected = [hits for _, _, rejection, _, hits in attempts if rejection is not None and hits > 0.0]
+    histograms = make_histograms(map_, drive.scan_hits, rejected)
+    if drawn := panels(histograms):
+        write_chart(out / "histograms.png", drawn)
+    report = make_report(
+        drive.recording,
+        drive.session.mapper.statistics,
+        drive.parameters.to_dict(),
+        drive.recorded_seconds,
+        drive.watch.figures(drive.recorded_seconds, drive.session.mapper.work_seconds),
+        {
+            "width": grid.cells.shape[1],
+            "height": grid.cells.shape[0],
+            "resolution": grid.resolution,
+            "switchable_edges": len(map_.switchable_edges["switch"]),
+            "switched_off": int((map_.switchable_edges["switch"] < _SWITCHED_OFF).sum()),
+        },
+        histograms,
+    )
+    write_atomically(out / "report.json", (json.dumps(report, indent=2) + "\n").encode())
+    return report
+
+
+def _write_attempts(out: Path, mapper: Mapper, map_: Map, grid: OccupancyGrid) -> None:
+    attempts = judge_attempts(mapper.closure_attempts, map_)
+    write_attempts(out / "closures.csv", attempts)
+    positions = map_.node_poses[:, :2]
+    ends: dict[str, list[NDArray[np.float64]]] = {}
+    for attempt in attempts:
+        ends.setdefault(attempt.verdict, []).append(positions[[attempt.query, attempt.candidate]])
+    origin = (*grid.origin, 0.0)
+    write_closures_picture(out / "closures.png", grid.cells, grid.resolution, origin, ends)
+
+
+def _names(drive: Drive) -> list[tuple[str, str]]:
+    return [(space, id) for space, id, *_ in drive.session.mapper.locations]
+
+
+def _closure_ends(map_: Map) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """(k, 2, 2): where the two nodes of each closure are."""
+    edges = map_.switchable_edges
+    positions = map_.node_poses[:, :2]
+    return np.stack([positions[edges["i"]], positions[edges["j"]]], axis=1)
+
+
+def _pose_graph(map_: Map) -> PoseGraph:
+    """The graph as solved; what a closure's switch took from it is taken from its information too."""
+    chain, loops = map_.edges, map_.switchable_edges
+    weight = np.maximum(loops["switch"], 1e-3)[:, None, None] ** 2
+    return PoseGraph(
+        ids=map_.node_ids.astype(np.int64),
+        poses=map_.node_poses,
+        edges=np.concatenate([np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64) for edges in (chain, loops)]),
+        measurements=np.concatenate([chain["pose"], loops["pose"]]),
+        covariances=np.concatenate([chain["covariance"], loops["covariance"] / weight]),
+    )

@@ -1,0 +1,76 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The figures of a replay: the table that people read and report.json."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from oort.recording import Recording
+
+
+def make_report(
+    recording: Recording,
+    statistics: Mapping[str, Any],
+    parameters: Mapping[str, Any],
+    recorded_seconds: float,
+    timings: Mapping[str, Any],
+    map_figures: Mapping[str, Any],
+    histograms: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Everything that report.json holds. Only ``timings`` differs between two replays of the same input."""
+    return {
+        "input": recording.name,
+        "kind": recording.kind,
+        "notes": list(recording.notes),
+        "recorded_seconds": recorded_seconds,
+        **statistics,
+        "map": dict(map_figures),
+        "histograms": dict(histograms),
+        "timings": dict(timings),
+        "parameters": dict(parameters),
+    }
+
+
+def format_table(report: Mapping[str, Any]) -> str:
+    """The figures as aligned lines of text."""
+    timings = report["timings"]
+    per_scan = timings["ms_per_scan"]
+    rows = [
+        ("scans", f"{report['scans']} ({report['scans_matched']} matched, {report['scans_too_small']} too small)"),
+        (
+            "nodes",
+            f"{report['nodes']} ({report['odometry_links']} linked by odometry{_reasons(report['match_refusals'])})",
+        ),
+        ("tracking", _tracking(report["tracking"])),
+        ("loop closures", _closures(report["loops"])),
+        ("dock closures", _closures(report["docks"])),
+        (
+            "solved",
+            "{kept} closures kept, {contradicted} contradicted, {came_back} came back".format(**report["solved"]),
+        ),
+        ("map", f"{report['map']['width']} x {report['map']['height']} cells of {report['map']['resolution']} m"),
+        ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),
+        ("waited", "{seconds:.2f} s in all for global SLAM, at most {max_ms:.0f} ms".format(**timings["waited"])),
+        ("times real time", f"{timings['times_real_time']:.0f}"),
+        ("CPU seconds", f"{timings['cpu_seconds']:.2f}{_work(timings['cpu_seconds_by_work'])}"),
+        ("peak memory", f"{timings['peak_memory_mb']:.0f} MB"),
+    ]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _closures(counts: Mapping[str, Any]) -> str:
+    return f"{counts['tried']} tried, {counts['accepted']} accepted{_reasons(counts['refused'], ', refused: ')}"
+
+
+def _tracking(scans: Mapping[str, int]) -> str:
+    states = ", ".join(f"{scans[state]} scans {state}" for state in ("tracking", "uncertain", "lost"))
+    return f"{states}; {scans['changes']} changes"
+
+
+def _work(seconds: Mapping[str, float]) -> str:
+    return f" ({', '.join(f'{work} {spent:.2f}' for work, spent in seconds.items())})"
+
+
+def _reasons(reasons: Mapping[str, int], lead: str = ": ") -> str:
+    return lead + ", ".join(f"{reason} {count}" for reason, count in sorted(reasons.items())) if reasons else ""
