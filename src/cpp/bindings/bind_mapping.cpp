@@ -87,6 +87,22 @@ py::list list_of(const ClosureLog& log) {
   return list;
 }
 
+py::dict dict_of(std::uint64_t count, const std::vector<OdometryFault>& faults) {
+  py::list first;
+  for (const OdometryFault& fault : faults) {
+    py::dict one;
+    one["kind"] = fault.kind == OdometryFault::Kind::kJump ? "jump" : "freeze";
+    one["time"] = fault.time;
+    one["distance"] = fault.distance;
+    one["angle"] = fault.angle;
+    first.append(one);
+  }
+  py::dict dict;
+  dict["count"] = count;
+  dict["first"] = first;
+  return dict;
+}
+
 py::dict dict_of(const MapperStatistics& statistics) {
   py::dict dict;
   dict["scans"] = statistics.local.scans;
@@ -97,6 +113,7 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["match_refusals"] = dict_of(statistics.chain.match_rejections);
   dict["contradictions"] = statistics.chain.contradictions;
   dict["tracking"] = dict_of(statistics.tracking);
+  dict["odometry_faults"] = dict_of(statistics.odometry_fault_count, statistics.odometry_faults);
   dict["loops"] = dict_of(statistics.global.loops);
   dict["docks"] = dict_of(statistics.global.docks);
   dict["solved"] = dict_of(statistics.global.solved);

@@ -34,7 +34,7 @@ class GridTrackerTest : public ::testing::Test {
     double worst = 0.0;
     for (std::size_t k = 0; k <= 80; k += stride) {
       const Pose2 step = k == 0 ? Pose2{} : between(odometry[k - stride], odometry[k]);
-      const TrackedScan tracked = tracker.track(seen(truth[k], sensor), 0.1 * static_cast<double>(k), step, {});
+      const TrackedScan tracked = tracker.track(seen(truth[k], sensor), 0.1 * static_cast<double>(k), {step}, {});
       EXPECT_EQ(tracked.usable(), k > 0) << k << ": " << to_string(tracked.rejection);
       worst = std::max(worst, between(between(truth[0], truth[k]), tracked.T_local_sensor).translation().norm());
     }

@@ -106,10 +106,34 @@ TEST_F(FaultTest, ARobotThatIsCarriedWhileItLooksIsFollowed) {
     odometry[k] = k < kPutDown ? odometry[k - 1] : odometry[k - 1] * between(truth[k - 1], truth[k]);
   }
   const std::vector<State> states = drive();
-  EXPECT_LT(error_at_end(), 0.1);
+  for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_LT(error_at(k), 0.1) << "scan " << k;
+  EXPECT_EQ(std::count(states.begin(), states.end(), State::kTracking), static_cast<long>(states.size()));
+  ASSERT_GE(mapper.statistics().odometry_fault_count, 1u);
+  EXPECT_EQ(mapper.statistics().odometry_faults.front().kind, OdometryFault::Kind::kFreeze);
+}
+
+/// Odometry freezes for two seconds and then makes up for them at once.
+TEST_F(FaultTest, OdometryThatFreezesAndCatchesUpIsSeenThrough) {
+  constexpr std::size_t kFrozen = 250, kAwake = 270;
+  for (std::size_t k = kFrozen; k < kAwake; ++k) odometry[k] = odometry[kFrozen - 1];
+  const std::vector<State> states = drive();
+  for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_LT(error_at(k), 0.1) << "scan " << k;
+  EXPECT_EQ(std::count(states.begin(), states.end(), State::kTracking), static_cast<long>(states.size()));
+  EXPECT_EQ(mapper.statistics().chain.contradictions, 0u);
+}
+
+/// Odometry begins anew at zero, metres away from where it was.
+TEST_F(FaultTest, OdometryThatRestartsAtZeroIsSeenThrough) {
+  constexpr std::size_t kRestart = 250;
+  const Pose2 restart = truth[kRestart];
+  for (std::size_t k = kRestart; k < odometry.size(); ++k) odometry[k] = between(restart, truth[k]);
+  const std::vector<State> states = drive();
+  for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_LT(error_at(k), 0.1) << "scan " << k;
   EXPECT_EQ(states.back(), State::kTracking);
-  EXPECT_GE(mapper.statistics().chain.contradictions, 1u);
-  EXPECT_GT(mapper.statistics().tracking.uncertain, 0u);
+  EXPECT_EQ(mapper.statistics().chain.contradictions, 0u);
+  ASSERT_EQ(mapper.statistics().odometry_fault_count, 1u);
+  EXPECT_EQ(mapper.statistics().odometry_faults.front().kind, OdometryFault::Kind::kJump);
+  EXPECT_NEAR(mapper.statistics().odometry_faults.front().time, 25.0, 1e-9);
 }
 
 /// It sees nothing of how it comes to a place three metres farther on.
@@ -131,8 +155,12 @@ TEST_F(FaultTest, ARobotThatIsPutDownElsewhereIsNotToldToBeTrackedForLong) {
 }
 
 TEST_F(FaultTest, TheLinkOfAContradictionIsWideAndBeginsASegmentWhereverItIsRead) {
-  constexpr std::size_t kSlip = 250;  // the wheels turn, the robot does not move by as much
-  for (std::size_t k = kSlip; k < odometry.size(); ++k) odometry[k] = Pose2{0.5, 0.0, 0.0} * odometry[k];
+  constexpr std::size_t kSlip = 250, kSteps = 6;  // one wheel slips: odometry turns, the robot does not
+  const Pose2 before = odometry[kSlip - 1];
+  for (std::size_t k = kSlip; k < odometry.size(); ++k) {
+    const double turned = 0.9 * static_cast<double>(std::min(k - kSlip + 1, kSteps)) / kSteps;
+    odometry[k] = before * Pose2{0.0, 0.0, turned} * between(before, odometry[k]);
+  }
   drive();
   ASSERT_GE(mapper.statistics().chain.contradictions, 1u);
   const Map& map = mapper.map();

@@ -71,13 +71,24 @@ void TrackerParams::validate() const {
   check(max_rejected_scans >= 1, "TrackerParams.max_rejected_scans", "must be at least 1");
 }
 
-Match Tracker::track(const Points& body, double time, const std::optional<Motion>& odometry) {
+Match Tracker::track(const Points& body, double time, const std::optional<Motion>& odometry,
+                     const std::vector<Motion>& alternatives) {
   if (odometry) check_motion(*odometry);
+  for (const Motion& alternative : alternatives) check_motion(alternative);
   check(std::isfinite(time), "the time of a scan", "is not finite");
   join_pending();
-  const Prior expected = expect(time, odometry);
+  Prior expected = expect(time, odometry);
+  hypothesis_ = 0;
   if (history_.table().empty()) return start(body, time, expected);
-  Match match = recover(body, time, expected, odometry.has_value(), try_match(body, expected, 1.0));
+  Match match = try_match(body, expected, 1.0);
+  for (std::size_t k = 0; k < alternatives.size(); ++k) {
+    const Prior other = expect(time, alternatives[k]);
+    if (consider(try_match(body, other, 1.0), match)) {
+      expected = other;
+      hypothesis_ = k + 1;
+    }
+  }
+  match = recover(body, time, expected, odometry.has_value(), match);
   // On the window's border but with good hits, the pose is still the best known; it must not shape the map, though.
   const bool good = match.hit_fraction >= params_.retry_hits;
   // After a gap, a few hits among few points say little: what is seen may lie where the local map shows nothing.
@@ -226,6 +237,14 @@ Match Tracker::try_match(const Points& body, const Prior& prior, double widen) c
   return matcher_.match(history_.table(), without_new_edge(body, prior), prior.mean, window(prior, widen), &prior);
 }
 
+// Another match takes the place of the best one if clearly more points hit, or if it is free of the window's border.
+bool Tracker::consider(const Match& other, Match& best) {
+  const bool freed = best.saturated && !other.saturated && other.hit_fraction >= best.hit_fraction;
+  const bool better = freed || other.hit_fraction > best.hit_fraction + kWorthwhileHits;
+  if (better) best = other;
+  return better;
+}
+
 // Odometry freezes and jumps at times. A poor match is tried again where the robot would be if it had kept its
 // velocity, then in a wider window; another pose is believed only if clearly more points hit.
 Match Tracker::recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best) {
@@ -233,17 +252,15 @@ Match Tracker::recover(const Points& body, double time, const Prior& expected, b
     return best.status == Status::kNoOverlap ||
            (best.points >= params_.matcher.min_points && (best.saturated || best.hit_fraction < params_.retry_hits));
   };
-  const auto consider = [&](const Match& other) {
-    const bool freed = best.saturated && !other.saturated && other.hit_fraction >= best.hit_fraction;
-    if (freed || other.hit_fraction > best.hit_fraction + kWorthwhileHits) best = other;
-  };
   if (params_.retry_hits <= 0.0 || !poor()) return best;
   ++retries_;
   if (has_odometry && !params_.stationary_motion_model) {
     const Prior kept{predict(time), drift_ + diagonal(params_.prior_sigma_xy, params_.prior_sigma_theta)};
-    consider(try_match(body, kept, 1.0));
+    consider(try_match(body, kept, 1.0), best);
   }
-  if (poor()) consider(try_match(body, {expected.mean, kRetryPrior * kRetryPrior * expected.covariance}, kRetryWindow));
+  if (poor()) {
+    consider(try_match(body, {expected.mean, kRetryPrior * kRetryPrior * expected.covariance}, kRetryWindow), best);
+  }
   return best;
 }
 

@@ -24,6 +24,11 @@ constexpr double kContradictedVarianceTheta = 0.06;  // [rad^2]
 // A scan of which fewer hit is poorly matched; so many in a row, and the local map is not of this place. The scans of a
 // good match hit by nine tenths and more; matches go on by chance after a robot was put down elsewhere.
 constexpr double kPoorHits = 0.6;
+
+// How far odometry may be off, beyond its model, over a way on which it was doubted; still an edge that submaps may be
+// drawn over (Chains).
+constexpr double kDoubted = 0.3;       // [m]
+constexpr double kDoubtedTheta = 0.3;  // [rad]
 constexpr int kMaxPoor = 8;
 
 Eigen::Matrix3d unmatched_covariance(double scale) {
@@ -61,7 +66,7 @@ void ChainBuilder::interrupt() {
   if (begin_ == Begin::kNot) begin_ = Begin::kAfterPause;
 }
 
-void ChainBuilder::track(LocalScan& scan) {
+void ChainBuilder::track(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_base_sensor) {
   Pose2 T_previous_sensor = between(T_odom_sensor_tracked_, scan.T_odom_sensor);
   const bool is_first = !is_going_on();
   if (is_first) {  // the first scan of a segment has nothing to be matched with
@@ -72,14 +77,40 @@ void ChainBuilder::track(LocalScan& scan) {
     local_map_ = LocalMap::kKnown;
     T_previous_sensor = Pose2{};
   }
-  scan.tracked = matcher_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor);
+  const bool is_doubted = !is_first && hypotheses.is_doubted();
+  const Pose2 T_odom_base_before = is_doubted ? scan.T_odom_base * inverse(hypotheses.T_before_after.front()) : Pose2{};
+  std::vector<Pose2> alternatives;
+  for (std::size_t k = 1; is_doubted && k < hypotheses.T_before_after.size(); ++k) {
+    const Pose2 T_odom_base = T_odom_base_before * hypotheses.T_before_after[k];
+    alternatives.push_back(between(T_odom_sensor_tracked_, T_odom_base * T_base_sensor));
+  }
+  scan.tracked = matcher_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor, alternatives);
   scan.was_tracked = true;
   scan.missed = !is_first && !matcher_.is_placed(scan.tracked);
+  if (is_doubted) settle_odometry(scan, hypotheses, T_odom_base_before, T_base_sensor);
   if (scan.tracked.restarted) local_map_ = LocalMap::kFresh;
   restart_if_poor(scan);
   T_odom_sensor_tracked_ = scan.T_odom_sensor;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;
   if (scan.tracked.usable()) ++counts_.scans_matched;
+}
+
+/// A match that sees all directions says how the base moved, and whether odometry is wrong; else the hypothesis that it
+/// was found with does.
+void ChainBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_odom_base_before,
+                                   const Pose2& T_base_sensor) {
+  Pose2 moved = hypotheses.T_before_after[scan.tracked.hypothesis];
+  if (!scan.missed && !scan.tracked.degenerate && scan.tracked.hit_fraction >= kTellingHits) {
+    const Pose2 T_odom_sensor = T_odom_sensor_tracked_ * between(T_local_sensor_tracked_, scan.tracked.T_local_sensor);
+    const Pose2 matched = between(T_odom_base_before, T_odom_sensor * inverse(T_base_sensor));
+    scan.odometry_is_wrong = !hypotheses.holds(matched);
+    moved = scan.odometry_is_wrong ? matched : hypotheses.T_before_after_odometry;
+  }
+  scan.T_odom_base = T_odom_base_before * moved;
+  scan.T_odom_sensor = scan.T_odom_base * T_base_sensor;
+  if (!scan.odometry_is_wrong) return;
+  doubt_since_newest_ = Eigen::Vector3d(kDoubted, kDoubted, kDoubtedTheta).cwiseAbs2().asDiagonal();
+  doubt_since_anchor_ = doubt_since_newest_;
 }
 
 void ChainBuilder::extrapolate(LocalScan& scan) const {
@@ -93,7 +124,11 @@ ChainNode ChainBuilder::add_node(LocalScan& scan) {
   node.addition.result.id = next_id_;
   node.addition.result.T_local_id = scan.tracked.T_local_sensor;
   newest_ = {next_id_++, scan.cloud.time, scan.tracked.T_local_sensor, scan.T_odom_sensor, scan.T_odom_base};
-  if (node.addition.matched) anchor_ = newest_;
+  doubt_since_newest_.setZero();
+  if (node.addition.matched) {
+    anchor_ = newest_;
+    doubt_since_anchor_.setZero();
+  }
   restart_if_rejected(scan, node.addition.matched);
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;  // linking may have corrected it
   begin_ = Begin::kNot;
@@ -152,7 +187,7 @@ ChainNode ChainBuilder::extend(LocalScan& scan) {
   // What is matched after a gap says where the node is from before the gap, not from the nodes within.
   const bool after_gap = anchor_.id != newest_.id;
   MatchLink match = matcher_.link(anchor_.T_local_sensor, between(anchor_.T_odom_sensor, scan.T_odom_sensor),
-                                  scan.tracked, after_gap && matcher_.knows_odometry());
+                                  scan.tracked, after_gap && matcher_.knows_odometry(), doubt_since_anchor_);
   const bool is_fresh = local_map_ != LocalMap::kKnown;
   if (match.contradicts_odometry && !is_fresh) return contradict(scan, T_newest_node, match);
   if (is_fresh) match.rejection = Rejection::kRestarted;  // the anchor is not on the map that the scan was matched with
@@ -163,7 +198,7 @@ ChainNode ChainBuilder::extend(LocalScan& scan) {
     node.addition.edges.push_back({0, from, next_id_, {scan.cloud.time, next_id_, pose, covariance, type}});
   };
   if (!believed || after_gap) {
-    Eigen::Matrix3d covariance = matcher_.odometry_covariance(T_newest_node, match.rejection);
+    Eigen::Matrix3d covariance = matcher_.odometry_covariance(T_newest_node, match.rejection) + doubt_since_newest_;
     if (local_map_ == LocalMap::kFreshPoor) covariance += least_contradiction();
     add_edge(newest_.id, T_newest_node, covariance, ConstraintType::kOdometry);
   }

@@ -3,12 +3,14 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/geometry/pose2.hpp"
 #include "oort/local_slam/incremental_graph_builder.hpp"
 #include "oort/map/node_addition.hpp"
 #include "oort/matching/rejection.hpp"
+#include "oort/odometry/odometry_monitor.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -23,6 +25,7 @@ struct LocalScan {
   bool was_tracked = false;
   bool missed = false;  ///< nothing that it shows says where it is
   bool is_node = false;
+  bool odometry_is_wrong = false;  ///< where it was doubted: a match that sees all directions says otherwise
 };
 
 /// What a node's chain hangs on.
@@ -49,9 +52,9 @@ struct SessionStart {
 struct ChainCounts {
   std::uint64_t scans_matched = 0;
   std::uint64_t nodes = 0;
-  std::uint64_t odometry_links = 0;                     ///< nodes whose match was rejected
+  std::uint64_t odometry_links = 0;  ///< nodes whose match was rejected
   RejectionCounts match_rejections;  ///< of nodes
-  std::uint64_t contradictions = 0;                     ///< segments begun as odometry and scans disagreed
+  std::uint64_t contradictions = 0;  ///< segments begun as odometry and scans disagreed
 };
 
 /// Follows the sensor along the chain of nodes: matches scans with the local map, links node to node, and decides when
@@ -81,8 +84,10 @@ class ChainBuilder {
   /// The newest node to a pose of the local map.
   Pose2 from_newest(const Pose2& T_local_sensor) const { return between(newest_.T_local_sensor, T_local_sensor); }
 
-  /// Places a scan by matching it with the local map.
-  void track(LocalScan& scan);
+  /// Places a scan by matching it with the local map. Where odometry is doubted, the scan's odometry becomes what the
+  /// match makes of the hypotheses on the base's motion since the last scan; if it speaks against odometry, odometry is
+  /// doubted in the edge that the motion takes part in.
+  void track(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_base_sensor);
   /// Places a scan by odometry alone.
   void extrapolate(LocalScan& scan) const;
   /// Makes the tracked scan a node: by its match where it may be trusted, else by odometry.
@@ -108,6 +113,8 @@ class ChainBuilder {
   };
 
   void forget();
+  void settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_odom_base_before,
+                       const Pose2& T_base_sensor);
   void begin_local_map(LocalScan& scan, const Pose2& T_local_sensor);
   void restart_if_poor(LocalScan& scan);
   void restart_if_rejected(const LocalScan& scan, bool matched);
@@ -124,10 +131,12 @@ class ChainBuilder {
   SessionStart session_;
   LocalMap local_map_ = LocalMap::kKnown;
   std::uint64_t next_id_ = 0;
-  Placed newest_;                 // the newest node
-  Placed anchor_;                 // the newest node whose match was believed
-  Pose2 T_odom_sensor_tracked_;   // when the matcher was last asked,
-  Pose2 T_local_sensor_tracked_;  // and what it said
+  Placed newest_;                                                 // the newest node
+  Placed anchor_;                                                 // the newest node whose match was believed
+  Pose2 T_odom_sensor_tracked_;                                   // when the matcher was last asked,
+  Pose2 T_local_sensor_tracked_;                                  // and what it said
+  Eigen::Matrix3d doubt_since_newest_ = Eigen::Matrix3d::Zero();  // of odometry, beyond its model
+  Eigen::Matrix3d doubt_since_anchor_ = Eigen::Matrix3d::Zero();
   int rejections_in_a_row_ = 0;
   int poor_in_a_row_ = 0;
 };

@@ -41,17 +41,20 @@ void FrsmScanTracker::reset(const Pose2& T_local_sensor) {
   tracker_.reset(to_frsm(T_local_sensor));
 }
 
-TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                                   const Eigen::Matrix3d& covariance) {
-  const frsm::Motion motion{to_frsm(T_previous_sensor), covariance};
+TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, const Motion& motion,
+                                   const std::vector<Motion>& alternatives) {
+  const auto of = [](const Motion& m) { return frsm::Motion{to_frsm(m.T_before_after), m.covariance}; };
+  std::vector<frsm::Motion> others;
+  for (const Motion& alternative : alternatives) others.push_back(of(alternative));
   const long restarts = tracker_.restarts();
-  const frsm::Match match = tracker_.track(points, time, motion);
+  const frsm::Match match = tracker_.track(points, time, of(motion), others);
   TrackedScan tracked;
   tracked.T_local_sensor = from_frsm(match.pose);
   tracked.information = match.information;
   tracked.covariance = match.covariance;
   tracked.hit_fraction = match.hit_fraction;
   tracked.degenerate = match.degenerate;
+  tracked.hypothesis = tracker_.hypothesis();
   tracked.restarted = tracker_.restarts() > restarts;
   tracked.rejection = tracker_.matched() ? Rejection::kNone : rejection_of_unmatched(match.status);
   return tracked;

@@ -13,8 +13,8 @@ class FrsmScanTracker : public ScanTracker {
   explicit FrsmScanTracker(const FrsmMatcherParameters& parameters);
 
   void reset(const Pose2& T_local_sensor) override;
-  TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                    const Eigen::Matrix3d& covariance) override;
+  TrackedScan track(const frsm::Points& points, double time, const Motion& motion,
+                    const std::vector<Motion>& alternatives) override;
   void set_pose(const Pose2& T_local_sensor) override;
 
  private:

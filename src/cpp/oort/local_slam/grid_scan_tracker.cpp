@@ -23,6 +23,9 @@ constexpr std::size_t kRefinementGrid = 1;
 // So many scans in a row that fit too little, and a fresh local map starts.
 constexpr int kMaxRejectedScans = 5;
 
+// Another motion than odometry's must bring this many more hits to be believed.
+constexpr double kWorthwhileHits = 0.02;
+
 std::vector<ProbabilityGridParameters> grids_of(const CartographerMatcherParameters& p) {
   std::vector<ProbabilityGridParameters> grids{p};
   if (p.use_ceres_refinement) grids.push_back(p.ceres_scan_matcher);
@@ -60,13 +63,20 @@ void GridScanTracker::reset(const Pose2& T_local_sensor) {
   pose_ = T_local_sensor;
 }
 
-TrackedScan GridScanTracker::track(const frsm::Points& points, double /*time*/, const Pose2& T_previous_sensor,
-                                   const Eigen::Matrix3d& /*covariance*/) {
+TrackedScan GridScanTracker::track(const frsm::Points& points, double /*time*/, const Motion& motion,
+                                   const std::vector<Motion>& alternatives) {
   join_pending();
   const Points near = in_range(points);
-  const Pose2 expected = pose_ * T_previous_sensor;
+  Pose2 expected = pose_ * motion.T_before_after;
   if (grids_.empty()) return begin(near, expected);
   TrackedScan tracked = match(near, expected);
+  for (std::size_t k = 0; k < alternatives.size(); ++k) {
+    TrackedScan other = match(near, pose_ * alternatives[k].T_before_after);
+    if (other.hit_fraction <= tracked.hit_fraction + kWorthwhileHits) continue;
+    expected = pose_ * alternatives[k].T_before_after;
+    tracked = other;
+    tracked.hypothesis = k + 1;
+  }
   if (tracked.usable()) {
     rejected_ = 0;
     pose_ = tracked.T_local_sensor;

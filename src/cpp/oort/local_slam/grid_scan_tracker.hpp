@@ -18,8 +18,8 @@ class GridScanTracker : public ScanTracker {
 
   void reset(const Pose2& T_local_sensor) override;
   /// `time` and `covariance` have no effect.
-  TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                    const Eigen::Matrix3d& covariance) override;
+  TrackedScan track(const frsm::Points& points, double time, const Motion& motion,
+                    const std::vector<Motion>& alternatives) override;
   void set_pose(const Pose2& T_local_sensor) override;
 
   const LocalGrids& local_map() const { return grids_; }

@@ -42,6 +42,14 @@ Eigen::Matrix3d diffuse_covariance() {
   return Eigen::Vector3d(0.2, 0.2, 0.2).asDiagonal();  // 0.45 m and 0.45 rad
 }
 
+// Of a motion that is one of several that may be true: how far each of them may be off.
+constexpr double kDoubtedMotion = 0.1;       // [m]
+constexpr double kDoubtedMotionTheta = 0.1;  // [rad]
+
+Eigen::Matrix3d doubted_motion() {
+  return Eigen::Vector3d(kDoubtedMotion, kDoubtedMotion, kDoubtedMotionTheta).cwiseAbs2().asDiagonal();
+}
+
 OdometryModel odometry_model(const OdometryNoiseParameters& p) {
   return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
           p.rotation_per_radian,   p.translation_floor,      p.rotation_floor};
@@ -75,8 +83,13 @@ void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
   tracker_->reset(T_local_sensor);
 }
 
-TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor) {
-  TrackedScan tracked = tracker_->track(points, time, T_previous_sensor, prior_covariance(T_previous_sensor));
+TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
+                                           const std::vector<Pose2>& alternatives) {
+  const Eigen::Matrix3d doubt = alternatives.empty() ? Eigen::Matrix3d::Zero() : doubted_motion();
+  const auto motion = [&](const Pose2& T) { return Motion{T, prior_covariance(T) + doubt}; };
+  std::vector<Motion> others;
+  for (const Pose2& alternative : alternatives) others.push_back(motion(alternative));
+  TrackedScan tracked = tracker_->track(points, time, motion(T_previous_sensor), others);
   tracked.extent = extent_of(points);
   return tracked;
 }
@@ -86,10 +99,11 @@ bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
 }
 
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
-                                        const TrackedScan& node, bool odometry_is_linked) {
+                                        const TrackedScan& node, bool odometry_is_linked,
+                                        const Eigen::Matrix3d& doubt) {
   MatchLink link;
   link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
-  const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry);
+  const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry) + doubt;
   const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
   link.rejection = match_rejection(parameters_, node, T_local_anchor, T_anchor_node_odometry);
   const bool comparable = motion_model_ && link_.odometry_is_prior;
@@ -100,8 +114,8 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
                                      link.T_anchor_node.translation().norm());
   if (motion_model_ && link.rejection == Rejection::kNone) {
-    if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, link);
-    const bool telling = !node.degenerate && node.hit_fraction >= kTellingHits;
+    if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, doubt, link);
+    const bool telling = doubt.isZero(0.0) && !node.degenerate && node.hit_fraction >= kTellingHits;
     if (telling) odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
   }
   return link;
@@ -150,11 +164,12 @@ Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& nod
 // The match is that of a score with odometry as its prior: it differs from odometry by less than odometry errs, and not
 // at all along what it does not see. If it does not, another guess than odometry's was followed (frsm::Tracker).
 void IncrementalGraphBuilder::compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry,
-                                      MatchLink& link) const {
+                                      const Eigen::Matrix3d& doubt, MatchLink& link) const {
   const Pose2& driven = T_anchor_node_odometry;
   const Eigen::Vector3d difference(link.T_anchor_node.x - driven.x, link.T_anchor_node.y - driven.y,
                                    wrap_angle(link.T_anchor_node.theta - driven.theta));
-  const Eigen::Matrix3d odometry = odometry_model_.model().covariance(driven);  // a slip is none of what is learned
+  // A slip is none of what is learned.
+  const Eigen::Matrix3d odometry = odometry_model_.model().covariance(driven) + doubt;
   link.contradicts_odometry = difference.dot(odometry.inverse() * difference) > kContradiction;
   const Eigen::Matrix3d match = match_information(node, heading);
   const Eigen::Matrix3d doubted = kDoubt * kDoubt * Eigen::Matrix3d::Identity() + odometry;

@@ -49,7 +49,9 @@ class IncrementalGraphBuilder {
 
   /// Takes the next scan: its returns in the sensor frame and the sensor's motion by odometry since the last one taken
   /// (since begin(): the identity).
-  TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor);
+  /// `alternatives`: what the motion may have been instead, where odometry is doubted.
+  TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
+                    const std::vector<Pose2>& alternatives = {});
 
   /// Whether a scan's match says where it is: usable, and with hits enough to be believed.
   bool is_placed(const TrackedScan& scan) const;
@@ -58,8 +60,9 @@ class IncrementalGraphBuilder {
   /// and learns from it how good the odometry is.
   /// The link's covariance is that of the match and of odometry together; `odometry_is_linked`: of the match alone, as
   /// links by odometry lead from the anchor to the node already and would count twice.
+  /// `doubt`: covariance of what odometry is doubted for on the way; nothing is learned from it then.
   MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node,
-                 bool odometry_is_linked);
+                 bool odometry_is_linked, const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
 
   /// Overrules the matcher: the scan just tracked is at this pose of the local frame.
   void correct(const Pose2& T_local_sensor);
@@ -79,7 +82,8 @@ class IncrementalGraphBuilder {
   Eigen::Matrix3d prior_covariance(const Pose2& T_before_after) const;
   Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& others,
                                    double distance) const;
-  void compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry, MatchLink& link) const;
+  void compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry,
+               const Eigen::Matrix3d& doubt, MatchLink& link) const;
   Eigen::Matrix3d match_information(const TrackedScan& node, double heading) const;
 
   IncrementalGraphBuilderParameters parameters_;

@@ -32,13 +32,20 @@ void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
 }
 
 void LocalSlam::begin_map() {
+  monitor_.forget();
   chain_.begin_map();
   last_.reset();
 }
 
 void LocalSlam::begin_session(const SessionStart& start, std::uint64_t node_count) {
+  monitor_.forget();
   chain_.begin_session(start, node_count);
   last_.reset();
+}
+
+void LocalSlam::interrupt() {
+  monitor_.forget();
+  chain_.interrupt();
 }
 
 LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
@@ -46,20 +53,21 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
   LocalScan now;
   now.cloud = deskewed(scan, sweep_of_base);
   now.T_odom_base_measured = T_odom_base;
-  now.T_odom_base = corrected(T_odom_base);
-  now.T_odom_sensor = now.T_odom_base * T_base_sensor_;
+  const MotionHypotheses hypotheses = expect(now);
   ++counts_.scans;
 
   const bool can_match = has_returns(now);
   if (!can_match) ++counts_.scans_too_small;
   bool due = can_match && is_due(now);
   if (can_match && (due || parameters_.incremental_graph_builder.match_every_scan)) {
-    chain_.track(now);
+    chain_.track(now, hypotheses, T_base_sensor_);
   } else {
     chain_.extrapolate(now);
   }
   now.missed = now.missed || !can_match;
   due = due || has_moved_unnoticed(now);
+
+  if (last_) monitor_.moved(between(last_->T_odom_base, now.T_odom_base), now.odometry_is_wrong);
 
   Result result;
   result.outcome = due ? ScanOutcome::kNode : can_match ? ScanOutcome::kCarried : ScanOutcome::kSkipped;
@@ -70,7 +78,7 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
 
 std::optional<ChainNode> LocalSlam::make_node() {
   if (last_->is_node || !has_returns(*last_)) return std::nullopt;
-  if (!last_->was_tracked) chain_.track(*last_);
+  if (!last_->was_tracked) chain_.track(*last_, {}, T_base_sensor_);
   return chain_.add_node(*last_);
 }
 
@@ -81,10 +89,20 @@ PointCloud LocalSlam::deskewed(const LaserScan& scan, const Sweep& sweep_of_base
   return compensate_motion(std::move(cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
 }
 
-/// Odometry with what it is always wrong by taken out of each motion.
-Pose2 LocalSlam::corrected(const Pose2& T_odom_base) const {
-  if (!last_ || !chain_.matcher().learns_odometry()) return T_odom_base;
-  return last_->T_odom_base * chain_.matcher().corrected(between(last_->T_odom_base_measured, T_odom_base));
+/// Where odometry, with what it is always wrong by taken out of each motion, has the base; or where it likelier is, if
+/// no robot moves as odometry says. Returns what the base may have done since the last scan.
+MotionHypotheses LocalSlam::expect(LocalScan& scan) {
+  const IncrementalGraphBuilder& matcher = chain_.matcher();
+  scan.T_odom_base = scan.T_odom_base_measured;
+  MotionHypotheses hypotheses;
+  if (last_ && matcher.knows_odometry()) {
+    Pose2 moved = between(last_->T_odom_base_measured, scan.T_odom_base_measured);
+    if (matcher.learns_odometry()) moved = matcher.corrected(moved);
+    hypotheses = monitor_.judge(scan.cloud.time, moved);
+    scan.T_odom_base = last_->T_odom_base * hypotheses.T_before_after.front();
+  }
+  scan.T_odom_sensor = scan.T_odom_base * T_base_sensor_;
+  return hypotheses;
 }
 
 bool LocalSlam::has_returns(const LocalScan& scan) const {

@@ -3,10 +3,12 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/geometry/sweep.hpp"
 #include "oort/local_slam/chain_builder.hpp"
+#include "oort/odometry/odometry_monitor.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -39,7 +41,7 @@ class LocalSlam {
 
   void begin_map();
   void begin_session(const SessionStart& start, std::uint64_t node_count);
-  void interrupt() { chain_.interrupt(); }
+  void interrupt();
 
   /// Throws InputError if the scan's limits, the pose or the motion are not finite; nothing changes then.
   Result add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base);
@@ -60,17 +62,19 @@ class LocalSlam {
   Pose2 T_newest_sensor() const { return chain_.from_newest(last_->tracked.T_local_sensor); }
 
   const LocalCounts& counts() const { return counts_; }
+  const OdometryMonitor& odometry_monitor() const { return monitor_; }
   const ChainCounts& chain_counts() const { return chain_.counts(); }
 
  private:
   PointCloud deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const;
-  Pose2 corrected(const Pose2& T_odom_base) const;
+  MotionHypotheses expect(LocalScan& scan);
   bool has_returns(const LocalScan& scan) const;
   bool is_due(const LocalScan& scan) const;
   bool has_moved_unnoticed(const LocalScan& scan) const;
 
   Parameters parameters_;
   Pose2 T_base_sensor_;
+  OdometryMonitor monitor_;
   ChainBuilder chain_;
   std::optional<LocalScan> last_;
   LocalCounts counts_;

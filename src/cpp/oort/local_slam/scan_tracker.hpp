@@ -5,12 +5,19 @@
 #include <frsm/types.hpp>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "oort/geometry/pose2.hpp"
 #include "oort/matching/rejection.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
+
+/// A motion of the sensor with its covariance, along the axes of the frame before.
+struct Motion {
+  Pose2 T_before_after;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
 
 /// What a matcher said before a finer one took over.
 struct CoarseMatch {
@@ -28,7 +35,8 @@ struct TrackedScan {
   bool degenerate = false;  ///< the match leaves a direction open
   bool restarted = false;   ///< a fresh local map begins with this scan: the old one did not fit any more
   Rejection rejection = Rejection::kNotMatched;  ///< of the match by itself: no gates
-  std::optional<CoarseMatch> first_stage;        ///< of a matcher of two stages
+  std::size_t hypothesis = 0;              ///< which motion it was found with: 0 is the first, k the k-th alternative
+  std::optional<CoarseMatch> first_stage;  ///< of a matcher of two stages
 
   bool usable() const { return rejection == Rejection::kNone; }
 };
@@ -43,8 +51,10 @@ class ScanTracker {
 
   /// Takes the next scan: its returns in the sensor frame and the sensor's motion by odometry since the last one taken
   /// (since reset(): the identity), with the covariance of that motion along the axes of the frame before.
-  virtual TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                            const Eigen::Matrix3d& covariance) = 0;
+  /// `alternatives`: what the motion may have been instead, where odometry is doubted; the one whose match has clearly
+  /// more inliers counts.
+  virtual TrackedScan track(const frsm::Points& points, double time, const Motion& T_previous_sensor,
+                            const std::vector<Motion>& alternatives) = 0;
 
   /// Overrules the matcher: the scan just tracked is at this pose of the local frame, and joins no local map.
   virtual void set_pose(const Pose2& T_local_sensor) = 0;

@@ -129,7 +129,9 @@ std::optional<Pose2> Mapper::locate(const std::string& name_space, const std::st
 }
 
 MapperStatistics Mapper::statistics() const {
-  return {local_.counts(), local_.chain_counts(), tracking_counts_, global_counts_};
+  const OdometryMonitor& odometry = local_.odometry_monitor();
+  return {local_.counts(), local_.chain_counts(),  tracking_counts_,
+          global_counts_,  odometry.fault_count(), odometry.faults()};
 }
 
 WorkSeconds Mapper::work_seconds() const {

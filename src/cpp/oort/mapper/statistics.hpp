@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "oort/local_slam/local_slam.hpp"
 #include "oort/loop_closure/statistics.hpp"
@@ -31,6 +32,8 @@ struct MapperStatistics {
   ChainCounts chain;
   TrackingCounts tracking;
   GlobalCounts global;
+  std::uint64_t odometry_fault_count = 0;
+  std::vector<OdometryFault> odometry_faults;  ///< the first 1000
 };
 
 }  // namespace oort

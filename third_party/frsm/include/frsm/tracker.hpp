@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "frsm/contours.hpp"
 #include "frsm/history.hpp"
@@ -59,7 +61,10 @@ class Tracker {
   /// pose does, and match.pose and match.covariance are those of the expectation. matched() tells which.
   /// The first scan after construction, reset() or a fresh start has nothing to match and returns kNoOverlap.
   /// Throws std::invalid_argument on an odometry that is not finite, or whose covariance is not positive semi-definite.
-  Match track(const Points& body, double time, const std::optional<Motion>& odometry);
+  /// `alternatives`: what the motion may have been instead, where odometry is doubted. Each is tried; another one than
+  /// the odometry's is believed only if clearly more points hit. hypothesis() tells which.
+  Match track(const Points& body, double time, const std::optional<Motion>& odometry,
+              const std::vector<Motion>& alternatives = {});
 
   /// Forgets the local map and starts anew at a pose.
   void reset(const Pose& pose);
@@ -72,6 +77,9 @@ class Tracker {
 
   /// Whether the last pose came from a match, rather than from the expectation.
   bool matched() const { return matched_; }
+
+  /// Which motion the last pose was found with: 0 is that of the odometry, k the k-th alternative.
+  std::size_t hypothesis() const { return hypothesis_; }
 
   /// The local map that the next scan is matched against, without the last scan, which joins at the next call of
   /// track().
@@ -105,6 +113,7 @@ class Tracker {
   Pose predict(double time) const;
   Window window(const Prior& prior, double scale) const;
   Match try_match(const Points& body, const Prior& prior, double widen) const;
+  static bool consider(const Match& other, Match& best);
   Match recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best);
   Match start(const Points& body, double time, const Prior& expected);
   bool should_add(const Match& match) const;
@@ -121,6 +130,7 @@ class Tracker {
   std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled
   Velocity velocity_;
   bool matched_ = false;
+  std::size_t hypothesis_ = 0;
   int rejected_ = 0;  // unusable scans in a row
   long added_scans_ = 0;
   long retries_ = 0;
