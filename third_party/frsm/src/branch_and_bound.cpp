@@ -87,7 +87,7 @@ class BranchAndBound {
   }
 
   bool hopeless(const Node& node) const {
-    if (node.bound < search_.floor) return true;
+    if (node.sum < search_.least_sum) return true;
     if (!best_) return false;
     if (node.bound != best_->value) return node.bound < best_->value;
     return spread(lattice_, node.it, innermost(node.ix, last_x(node)), innermost(node.iy, last_y(node))) >

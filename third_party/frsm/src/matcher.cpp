@@ -49,14 +49,13 @@ double second_peak(const Search& search, const Candidate& best, const MatcherPar
   const Lattice& lattice = search.lattice;
   const int cells = steps(kSeparation, lattice.cell);
   const int turns = steps(kSeparation, lattice.theta_step);
-  Search apart{search.table,
-               search.body,
-               lattice,
-               Objective(search.objective.weight(), search.body.size(), nullptr),
-               Exclusion{best, cells, cells, turns},
-               0.0,
-               search.on_lookups};
-  apart.floor = apart.objective.evidence(params.ambiguity_floor * best.sum);
+  const Search apart{search.table,
+                     search.body,
+                     lattice,
+                     Objective(search.objective.weight(), search.body.size(), nullptr),
+                     Exclusion{best, cells, cells, turns},
+                     static_cast<std::uint32_t>(std::ceil(params.ambiguity_floor * best.sum)),
+                     search.on_lookups};
   const auto second = find_best(apart, params.exhaustive_limit);
   return second ? static_cast<double>(second->sum) / best.sum : 0.0;
 }
@@ -136,6 +135,7 @@ void MatcherParams::validate() const {
   check(hit_value >= 1 && hit_value <= 255, "MatcherParams.hit_value", "must be 1 to 255");
   check(min_points >= 1, "MatcherParams.min_points", "must be at least 1");
   check(min_hit_fraction >= 0.0 && min_hit_fraction <= 1.0, "MatcherParams.min_hit_fraction", "must be 0 to 1");
+  check(min_score >= 0.0 && min_score <= 1.0, "MatcherParams.min_score", "must be 0 to 1");
   check(information_scale > 0.0 && std::isfinite(information_scale), "MatcherParams.information_scale",
         "must be above 0");
   check(min_curvature >= 0.0 && min_curvature <= 1.0, "MatcherParams.min_curvature", "must be 0 to 1");
@@ -165,9 +165,11 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
                       make_lattice(guess, window, cell, params_.theta_step),
                       Objective(weight, points.size(), prior),
                       std::nullopt,
-                      -std::numeric_limits<double>::infinity(),
+                      static_cast<std::uint32_t>(std::ceil(255.0 * params_.min_score * points.size())),
                       on_lookups};
-  const Candidate best = *find_best(search, params_.exhaustive_limit);
+  const std::optional<Candidate> found = find_best(search, params_.exhaustive_limit);
+  if (!found) return give_up(Status::kLowHits);
+  const Candidate& best = *found;
   if (best.sum == 0) return give_up(Status::kNoOverlap);
 
   Match match;

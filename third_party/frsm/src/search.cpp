@@ -66,10 +66,10 @@ std::optional<Candidate> search_all(const Search& search) {
       for (int ix = -lattice.nx; ix <= lattice.nx; ++ix) {
         if (search.exclusion && search.exclusion->contains(it, ix, iy)) continue;
         Candidate candidate{it, ix, iy, slice.sum(ix, iy), 0.0};
+        if (candidate.sum < search.least_sum) continue;
         candidate.value = search.objective.evidence(candidate.sum);
-        if (candidate.value < (best ? best->value : search.floor)) continue;  // the prior can only lower it
+        if (best && candidate.value < best->value) continue;  // the prior can only lower it
         candidate.value += search.objective.prior(lattice.at(it, ix, iy));
-        if (candidate.value < search.floor) continue;
         if (!best || search.better(candidate, *best)) best = candidate;
       }
     }

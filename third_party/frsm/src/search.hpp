@@ -3,7 +3,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -71,7 +70,7 @@ struct Search {
   Lattice lattice;
   Objective objective;
   std::optional<Exclusion> exclusion;
-  double floor = -std::numeric_limits<double>::infinity();  // candidates of less value do not count
+  std::uint32_t least_sum = 0;  // candidates of a smaller sum do not count
   OnLookups on_lookups;
 
   /// Strict order of candidates: by value, then nearest to the guess, then by index; never equal for different poses.

@@ -120,6 +120,26 @@ TEST(Matcher, SymmetricRoomIsAmbiguous) {
   EXPECT_EQ(Matcher().match(table, body, {}, {0.4, 0.4, kPi}, nullptr).ambiguity, 0.0);
 }
 
+TEST(Matcher, PosesBelowTheLeastScoreAreNotFound) {
+  std::mt19937 random(7);
+  const Pose pose{0.3, 0.5, 0.1};
+  const Points body = test::scan(test::room(0.2), pose, {271, 1.5 * kPi, 8.0, 0.01}, random);
+  const Table table = draw(body, pose);
+  for (const double width : {0.05, 2.0}) {  // all poses are tried, or branch and bound
+    MatcherParams params;
+    const Match best = Matcher(params).match(table, body, pose, {width, width, 0.1}, nullptr);
+    params.min_score = 0.95 * best.score;
+    const Match same = Matcher(params).match(table, body, pose, {width, width, 0.1}, nullptr);
+    EXPECT_EQ(same.pose.x, best.pose.x);
+    EXPECT_EQ(same.status, best.status);
+    params.min_score = 1.0;
+    const Match none = Matcher(params).match(table, body, {0.29, 0.5, 0.1}, {width, width, 0.1}, nullptr);
+    EXPECT_EQ(none.status, Status::kLowHits);
+    EXPECT_EQ(none.hits, 0);
+    EXPECT_EQ(none.pose.x, 0.29);
+  }
+}
+
 TEST(Matcher, MissOutsideTheWindowIsSaturated) {
   std::mt19937 random(6);
   const Pose pose{0.1, 0.3, 0.2};

@@ -52,9 +52,7 @@ TEST(Peaks, TheFirstTwoAreThoseOfTryingAllPoses) {
     ASSERT_GE(found.peaks.size(), 1U);
 
     const Lattice lattice{middle, kCell, kStep, 30, 24, 20};
-    const Search all{table,        body,
-                     lattice,      Objective(1.0, body.size(), nullptr),
-                     std::nullopt, -std::numeric_limits<double>::infinity()};
+    const Search all{table, body, lattice, Objective(1.0, body.size(), nullptr), std::nullopt};
     const Candidate best = *search_all(all);
     EXPECT_DOUBLE_EQ(found.peaks[0].score, best.sum / (255.0 * static_cast<double>(body.size())));
     if (found.peaks.size() < 2) continue;
@@ -63,7 +61,7 @@ TEST(Peaks, TheFirstTwoAreThoseOfTryingAllPoses) {
     taken.ix = static_cast<int>(std::lround((found.peaks[0].pose.x - middle.x) / kCell));
     taken.iy = static_cast<int>(std::lround((found.peaks[0].pose.y - middle.y) / kCell));
     taken.it = static_cast<int>(std::lround(wrap(found.peaks[0].pose.theta - middle.theta) / kStep));
-    const Search rest{table, body, lattice, all.objective, Exclusion{taken, 6, 6, 6}, all.floor};
+    const Search rest{table, body, lattice, all.objective, Exclusion{taken, 6, 6, 6}, all.least_sum};
     EXPECT_DOUBLE_EQ(found.peaks[1].score, search_all(rest)->sum / (255.0 * static_cast<double>(body.size())));
   }
 }

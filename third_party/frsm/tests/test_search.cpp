@@ -145,7 +145,7 @@ Search random_search(Random* random, const Table& table, const Points& body, con
                                  random->integer(0, 8),
                                  random->integer(0, 8),
                                  random->integer(0, 2)};
-    search.floor = search.objective.evidence(random->integer(0, 100) * static_cast<double>(body.size()));
+    search.least_sum = static_cast<std::uint32_t>(random->integer(0, 100)) * static_cast<std::uint32_t>(body.size());
   }
   return search;
 }

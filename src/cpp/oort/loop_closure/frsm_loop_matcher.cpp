@@ -15,6 +15,11 @@ namespace {
 constexpr double kFineCells = 3.0;
 constexpr double kFineThetaSteps = 4.0;
 
+// A wide search that finds nothing is by far the dearest, as no good pose prunes it: it ends early if it need not go on
+// below the score that a match with enough hits has anyway: this much of the share of hits that is asked for. Believed
+// ones score 0.92 of it and more, but one of 3,900 on the logs of CSAIL and Killian court.
+constexpr double kScorePerHit = 0.75;
+
 // Of a submap, in one piece of work: about as dear as a match.
 constexpr std::size_t kScansDrawnAtOnce = 8;
 
@@ -31,9 +36,10 @@ frsm::Points thinned(const frsm::Points& points, std::size_t count) {
   return some;
 }
 
-frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const LoopScale& scale) {
+frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const LoopScale& scale, double min_hits) {
   frsm::MatcherParams params = matcher_params(p);
   params.ambiguity_floor = scale.max_ambiguity;
+  params.min_score = kScorePerHit * min_hits;
   return params;
 }
 
@@ -50,7 +56,8 @@ FrsmLoopMatcher::FrsmLoopMatcher(const Parameters& parameters, const LoopScale& 
       scale_(scale),
       table_(loop_table_params(parameters.incremental_graph_builder.frsm_matcher, scale)),
       submaps_(table_cache(scale.submap_nodes, kSubmapCacheBytes, table_, frsm::ContourParams::urg())),
-      matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale)) {}
+      matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale,
+                                   parameters_.fine_match_hitpct_threshold)) {}
 
 bool FrsmLoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) const {
   return chains.neighborhood(candidate, scale_.submap_nodes).size() <=
@@ -81,7 +88,7 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, s
   const frsm::Prior prior{to_frsm(expected), window.covariance};
   const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,
                                            {window.xy, window.xy, window.theta}, &prior, on_lookups);
-  if (rough.hits == 0) return rejected(Rejection::kNoHits, expected, 0.0);
+  if (rough.status == frsm::Status::kNoOverlap) return rejected(Rejection::kNoHits, expected, 0.0);
   const Pose2 roughly = from_frsm(rough.pose);
   if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
     return rejected(Rejection::kRoughHits, roughly, rough.hit_fraction);

@@ -41,6 +41,7 @@ struct MatcherParams {
   int hit_value = 100;              ///< a point whose cell holds at least this is a hit
   int min_points = 10;              ///< fewer valid points are kTooFewPoints
   double min_hit_fraction = 0.4;    ///< less is kLowHits
+  double min_score = 0.0;           ///< poses that score less are not searched for: none is kLowHits, at the guess
   double information_scale = 10.0;  ///< log-likelihood of one independent point; for 1.5 cm of range noise
   double min_curvature = 0.015;     ///< a direction constrained by less than this share of the points is degenerate
   double ambiguity_floor = 1.0;  ///< look for a second peak of at least this share of the best score; >= 1: do not look
