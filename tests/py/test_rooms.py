@@ -18,6 +18,7 @@ ORDER = [
     "poses",
     "parameters",
     "recording",
+    "saved_maps",
     "events",
     "locations",
     "session",

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import itertools
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -249,3 +250,23 @@ def test_same_events_same_bytes(tmp_path: Path) -> None:
         session.stop()
     for suffix in (".map_capnp", ".map_meta_capnp"):
         assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()
+
+
+def test_points_need_ids_of_their_own() -> None:
+    locations = Session(Parameters()).locations
+    for ids, message in ((["a", ""], "point 1 has an empty id"), (["a", "a"], "2 points for 'n'/'a'")):
+        with pytest.raises(StateError, match=message):
+            locations.create_points(["n", "n"], [(0.0, 0.0), (1.0, 0.0)], ids)
+
+
+def test_no_path_and_no_name_holds_a_nul() -> None:
+    session = Session(Parameters())
+    calls: list[tuple[str, list[Any]]] = [
+        ("map/start", ["a\0b"]),
+        ("map/load", ["a\0b"]),
+        ("graph_loc/create", ["n", "a\0b"]),
+        ("graph_loc/create_points", [["n\0"], [[0.0, 0.0]], ["a"]]),
+    ]
+    for call, args in calls:
+        with pytest.raises(StateError, match="NUL character"):
+            session.call(call, args)

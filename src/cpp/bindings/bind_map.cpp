@@ -5,8 +5,12 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <optional>
+
 #include "bindings.hpp"
 #include "oort/map/map.hpp"
+#include "oort/render/crop.hpp"
 #include "oort/render/render.hpp"
 #include "oort/storage/map_file.hpp"
 #include "oort/storage/paths.hpp"
@@ -237,17 +241,25 @@ void bind_rendering(py::module_& m) {
           "(height, width) int8, a copy: 0 free, 100 occupied, -1 unknown; row 0 has the least y.");
   m.def(
       "render_map",
-      [](const Map& map, const Parameters& parameters) {
+      [](const Map& map, const Parameters& parameters, const std::optional<std::array<double, 4>>& within) {
         RenderedMap rendered;
         {
           const py::gil_scoped_release release;
-          rendered = render(map.graph.nodes, map.clouds, parameters.output_map);
+          if (within) {
+            const auto& [x_min, y_min, x_max, y_max] = *within;
+            const Eigen::AlignedBox2d box(Eigen::Vector2d(x_min, y_min), Eigen::Vector2d(x_max, y_max));
+            const Cropped cropped = crop(map.graph.nodes, map.clouds, box);
+            rendered = render(cropped.nodes, cropped.clouds, parameters.output_map);
+          } else {
+            rendered = render(map.graph.nodes, map.clouds, parameters.output_map);
+          }
         }
         return std::make_pair(std::move(rendered.map), std::move(rendered.map_cleaned));
       },
-      py::arg("map"), py::arg("parameters"),
+      py::arg("map"), py::arg("parameters"), py::arg("within") = py::none(),
       "Draws a map: (map, map_cleaned), the second without speckle noise. Of the parameters "
-      "output_map counts. Raises ParameterError or InputError.");
+      "output_map counts. Of a box within (x_min, y_min, x_max, y_max) [m] only what lies there. "
+      "Raises ParameterError or InputError.");
 }
 
 }  // namespace

@@ -540,10 +540,13 @@ def normalise_map_path(path: str) -> str:
     Raises MapFileError.
     """
 
-def render_map(map: Map, parameters: Parameters) -> tuple[OccupancyGrid, OccupancyGrid]:
+def render_map(
+    map: Map, parameters: Parameters, within: tuple[float, float, float, float] | None = None
+) -> tuple[OccupancyGrid, OccupancyGrid]:
     """Draws a map: (map, map_cleaned), the second without speckle noise.
 
-    Of the parameters output_map counts. Raises ParameterError or InputError.
+    Of the parameters output_map counts. Of a box within (x_min, y_min, x_max, y_max) [m] only what lies there. Raises
+    ParameterError or InputError.
     """
 
 def optimize_graph(

@@ -4,6 +4,7 @@
 
 import itertools
 import uuid
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -58,6 +59,12 @@ class Locations:
                 f"create_points: got {len(name_spaces)} namespaces, {len(points)} points and {len(ids)} ids; "
                 "give one namespace and one id per point"
             )
+        if not all(ids):
+            raise StateError(f"create_points: point {list(ids).index('')} has an empty id; give each point one")
+        keys = Counter(zip(name_spaces, ids, strict=True))
+        for (name_space, id), count in keys.items():
+            if count > 1:
+                raise StateError(f"create_points: {count} points for {name_space!r}/{id!r}; give each an id of its own")
         if points:
             self._mapper.create_points(list(name_spaces), [(float(p[0]), float(p[1])) for p in points], list(ids))
 

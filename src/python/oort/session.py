@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from oort._core import Map, Mapper, Parameters, Saved, ScanResult, load_map, normalise_map_path, save_map, save_metadata
+from oort._core import Map, Mapper, Parameters, Saved, ScanResult, normalise_map_path, save_map, save_metadata
 from oort.errors import StateError
 from oort.locations import Locations, Pose
 from oort.recording import Scan
+from oort.saved_maps import open_map
 
 _FAR = 100.0  # [m] from all that was mapped: no robot was carried there, the pose is wrong
 
@@ -162,11 +163,11 @@ class Session:
         """Saves the map as it is, if there is a map and a path."""
         self._write(Saved.MAP)
 
-    def load(self, path: str) -> None:
+    def load(self, path: str, *, ignore_checksum: bool = False) -> None:
         """Replaces the map by one from disk; what is in memory stays if that fails."""
         _check_text(path=path)
         mapper = self._new_mapper()
-        mapper.set_map(load_map(path))
+        mapper.set_map(open_map(path, ignore_checksum=ignore_checksum))
         self._use(mapper)
         self._state = State.NOT_MAPPING
         self._path = path
@@ -247,6 +248,8 @@ class Session:
         return created
 
     def _create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
+        for name_space, id in zip(name_spaces, ids, strict=False):  # their numbers are checked with the points'
+            _check_text(namespace=name_space, id=id)
         self._locations.create_points(name_spaces, points, ids)
         self._write(Saved.METADATA)
 
@@ -283,3 +286,5 @@ def _check_text(**values: object) -> None:
     for name, value in values.items():
         if not isinstance(value, str):
             raise TypeError(f"{name} must be a string, got {value!r}")
+        if "\0" in value:
+            raise StateError(f"{name} holds a NUL character: {value!r}; no path and no name can")

@@ -107,6 +107,10 @@ def test_graphs_that_do_not_fit_are_refused(tmp_path: Path) -> None:
         ("VERTEX_SE2 0 0 0 0\n\nVERTEX_SE2 0 1 2 0\n", "line 3: there is a vertex 0 already"),
         ("VERTEX_SE2 0.5 0 0 0\n", "line 1: ids of vertices are whole numbers, not '0.5'"),
         ("VERTEX_SE2 99999999999999999999 0 0 0\n", "line 1: ids of vertices are whole numbers"),
+        ("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n", r"is a 3D pose graph \(VERTEX_SE3:QUAT\); only planar ones"),
+        ("# x\nODOMETRY 0 1\nLANDMARK 3\nLANDMARK 4\n", "it holds 2 LANDMARK, 1 ODOMETRY"),
+        ("EDGE2 0 1 1 0 0 1 0 1 1 0 0\n", "holds 1 edges and no VERTEX_SE2.*the poses to begin with are missing"),
+        ("VERTEX2 0 0 0\n", "line 1: VERTEX2 must have 5 fields, but has 4"),
         ("EDGE_SE2 0 1 0 0 0 1 0 0 1 0 1\nVERTEX_SE2 0 0 0 0\n", "line 1: the edge has the vertex 1, which"),
         ("VERTEX_SE2 4 0 0 0\nEDGE_SE2 4 4 0 0 0 1 0 0 1 0 1\n", "line 2: the edge links the vertex 4 to itself"),
         ("VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 0 0 0 1 0 0 1 0\n", "line 2: EDGE_SE2 must have 12 fields, but has 11"),
@@ -117,6 +121,18 @@ def test_damaged_files_are_refused(tmp_path: Path, text: str, message: str) -> N
     path.write_text(text)
     with pytest.raises(InputError, match=message):
         read_g2o(path)
+
+
+def test_toros_graphs_are_read_as_the_same_in_g2o(tmp_path: Path) -> None:
+    """TORO writes the information in another order: 11 12 22 33 13 23."""
+    toro, g2o = tmp_path / "a.graph", tmp_path / "a.g2o"
+    toro.write_text("VERTEX2 0 0 0 0\nVERTEX2 1 1 2 0.5\nEDGE2 0 1 1 2 0.5 50 1 60 100 2 3\n")
+    g2o.write_text("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 2 0.5\nEDGE_SE2 0 1 1 2 0.5 50 1 2 60 3 100\n")
+    a, b = read_g2o(toro), read_g2o(g2o)
+    np.testing.assert_array_equal(a.poses, b.poses)
+    np.testing.assert_array_equal(a.edges, b.edges)
+    np.testing.assert_array_equal(a.measurements, b.measurements)
+    np.testing.assert_array_equal(a.covariances, b.covariances)
 
 
 def test_manhattan(datasets: Path) -> None:

@@ -236,3 +236,12 @@ def test_only_values_can_be_set() -> None:
     for bad in (None, [1], {}, object()):
         with pytest.raises(TypeError):
             parameters.set(f"{MATCHER}.stationary_motion_model", bad)  # type: ignore[arg-type]
+
+
+def test_a_whole_number_may_have_a_decimal_point(tmp_path: Path) -> None:
+    file = tmp_path / "params.json"
+    file.write_text('{"min_pointcloud_size": 7.0}')
+    assert read_parameters(file).get("min_pointcloud_size") == 7
+    file.write_text('{"min_pointcloud_size": 7.5}')
+    with pytest.raises(ParameterError):
+        read_parameters(file)

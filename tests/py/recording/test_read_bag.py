@@ -3,7 +3,6 @@
 """ROS bags: frames, odometry and mount are found, and what is missing, ambiguous or damaged is said."""
 
 import math
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -204,31 +203,6 @@ def test_scans_without_readings_are_skipped_and_counted(tmp_path: Path) -> None:
 def test_what_is_missing_is_said(tmp_path: Path, bag: Bag, message: str) -> None:
     with pytest.raises(InputError, match=message):
         open_recording(bag.ros1(tmp_path / "a.bag"))
-
-
-def test_a_ros1_bag_cut_anywhere_is_refused(tmp_path: Path) -> None:
-    data = home_robot().ros1(tmp_path / "whole.bag").read_bytes()
-    path = tmp_path / "cut.bag"
-    for size in np.linspace(14, len(data) - 1, 40).astype(int).tolist():
-        path.write_bytes(data[:size])
-        with pytest.raises(InputError, match=r"cut\.bag.*(cut short|no topic)"):
-            open_recording(path)
-
-
-@pytest.mark.parametrize("storage", STORAGES)
-def test_a_ros2_bag_cut_anywhere_is_refused(tmp_path: Path, storage: str) -> None:
-    whole = home_robot().ros2(tmp_path / "whole", STORAGES[storage])
-    path = shutil.copytree(whole, tmp_path / "cut")
-    (file,) = (file for file in path.iterdir() if file.suffix != ".yaml")
-    data = file.read_bytes()
-    for size in np.linspace(20, len(data) - 1, 25).astype(int).tolist():
-        file.write_bytes(data[:size])
-        for target in (path, file):
-            with pytest.raises(InputError, match=r"cut short|lists; copy it again"):
-                open_recording(target)
-    file.unlink()
-    with pytest.raises(InputError, match="cut"):
-        open_recording(path)
 
 
 def test_a_bag_that_vanishes_after_opening_is_an_error(tmp_path: Path) -> None:

@@ -11,11 +11,12 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from oort._core import load_map
+from oort.cli.tool import add_checksum_argument
 from oort.errors import OortError
 from oort.evaluation.ground_truth import RelationLimits, autogenerate_relations, write_relations
 from oort.evaluation.trajectories import AteResult, RelationsResult, evaluate_ate, evaluate_relations
 from oort.export import read_tum
+from oort.saved_maps import open_map
 
 
 def _format(result: RelationsResult | AteResult) -> str:
@@ -88,6 +89,7 @@ def _add_limits(command: argparse.ArgumentParser) -> None:
         metavar=("X", "Y", "THETA"),
         help="where the sensor sits on the base [m, rad] (default: at its origin)",
     )
+    add_checksum_argument(command)
 
 
 def _autogenerate(arguments: argparse.Namespace) -> str:
@@ -95,7 +97,8 @@ def _autogenerate(arguments: argparse.Namespace) -> str:
     limits = RelationLimits(
         arguments.min_covered_distance, arguments.outlier_threshold_meters, arguments.outlier_threshold_radians
     )
-    truth = autogenerate_relations(load_map(arguments.map), arguments.sensor_on_base, limits)
+    map_ = open_map(arguments.map, ignore_checksum=arguments.ignore_checksum)
+    truth = autogenerate_relations(map_, arguments.sensor_on_base, limits)
     write_relations(arguments.reference, truth.relations)
     return (
         f"relations    {len(truth.relations)} of {truth.closures} closures\n"

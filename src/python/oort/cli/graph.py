@@ -70,9 +70,11 @@ def _format(figures: dict[str, Any]) -> str:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="oort graph", description="Solves pose graphs in the g2o format.")
+    parser = argparse.ArgumentParser(prog="oort graph", description="Solves pose graphs in the format of g2o or TORO.")
     solve = parser.add_subparsers(dest="command", required=True).add_parser("solve", help="solve one")
-    solve.add_argument("graph", metavar="IN.g2o", help="VERTEX_SE2 and EDGE_SE2 lines")
+    solve.add_argument(
+        "graph", metavar="IN.g2o", help="VERTEX_SE2 and EDGE_SE2 lines (g2o), or VERTEX2 and EDGE2 (TORO)"
+    )
     solve.add_argument("out", metavar="OUT.g2o", help="the solved poses, with the edges that are believed")
     solve.add_argument(
         "--method",

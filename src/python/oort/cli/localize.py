@@ -7,15 +7,15 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from oort._core import load_map
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import add_pose_argument, parse_arguments, run_tool
+from oort.cli.tool import add_checksum_argument, add_pose_argument, parse_arguments, run_tool
 from oort.localization import STARTS, start_pose
 from oort.offline.follow import follow
 from oort.offline.localization_results import format_localization, write_localization
 from oort.offline.progress import scans_with_progress
 from oort.parameters import read_parameters
 from oort.recording import Pose
+from oort.saved_maps import open_map
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -23,19 +23,20 @@ def _parser() -> argparse.ArgumentParser:
         prog="oort localize", description="Follows a recorded drive on a saved map, without changing the map."
     )
     parser.add_argument("map", help="base path of the saved map")
-    parser.add_argument("input", help="the recording, as for oort replay")
+    parser.add_argument("input", nargs="+", help="the recording, as for oort replay")
     parser.add_argument("--start", choices=STARTS, default=STARTS[0], help="how to begin (default: global, a search)")
     add_pose_argument(parser, "--pose", "the sensor's pose for --start pose [m, rad]")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     add_recording_arguments(parser)
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>-localized)")
+    add_checksum_argument(parser)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser
 
 
 def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
-    map_ = load_map(args.map)
+    map_ = open_map(args.map, ignore_checksum=args.ignore_checksum)
     recording = recording_of(args, parameters)
     start: Pose | None = None
     if args.start == "pose":
@@ -58,4 +59,4 @@ def main(argv: Sequence[str] | None = None) -> int:
     args = parse_arguments(parser, argv)
     if (args.start == "pose") != (args.pose is not None):
         parser.error("--start pose and --pose go together")
-    return run_tool("oort localize", lambda: _run(args), args.input)
+    return run_tool("oort localize", lambda: _run(args), args.input[0])

@@ -3,6 +3,7 @@
 """The command ``oort``: one word for each tool."""
 
 import importlib
+import signal
 import sys
 from collections.abc import Sequence
 
@@ -13,7 +14,7 @@ _TOOLS = {
     "merge": "join two saved maps of the same home",
     "simulate": "make up a home and a drive through it",
     "evaluate": "compare a trajectory with what is known to be true",
-    "graph": "solve a pose graph in the g2o format",
+    "graph": "solve a pose graph in the format of g2o or TORO",
     "migrate": "write a saved map in the newest format",
     "parameters": "print the table of parameters",
 }
@@ -26,6 +27,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         stream = sys.stdout if arguments[:1] in (["-h"], ["--help"]) else sys.stderr
         print("usage: oort TOOL ...", *(f"  {name:<11}{what}" for name, what in _TOOLS.items()), sep="\n", file=stream)
         return 0 if stream is sys.stdout else 2
+    try:
+        return _run(arguments)
+    except KeyboardInterrupt:  # before the tool itself could take it
+        print(f"oort {arguments[0]}: interrupted", file=sys.stderr)
+        return 128 + signal.SIGINT
+
+
+def _run(arguments: list[str]) -> int:
     module = importlib.import_module(f"oort.cli.{arguments[0]}")
     result: int = module.main(arguments[1:])
     return result

@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_pose_argument, parse_arguments, run_tool
+from oort.cli.tool import add_checksum_argument, add_pose_argument, parse_arguments, run_tool
 from oort.offline.merge import merge
 from oort.parameters import read_parameters
 
@@ -23,12 +23,14 @@ def _parser() -> argparse.ArgumentParser:
         parser, "--at", "about where the second map's origin lies on the first [m, rad]; found if not given"
     )
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
+    add_checksum_argument(parser)
     return parser
 
 
 def _run(args: argparse.Namespace) -> None:
     at = (args.at[0], args.at[1], args.at[2]) if args.at else None
-    for line in merge(args.first, args.second, args.target, read_parameters(args.params), at):
+    parameters = read_parameters(args.params)
+    for line in merge(args.first, args.second, args.target, parameters, at, ignore_checksum=args.ignore_checksum):
         print(line, flush=True)
 
 

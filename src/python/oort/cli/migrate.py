@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import run_tool
+from oort.cli.tool import add_checksum_argument, run_tool
 from oort.offline.migrate import migrate
 
 
@@ -16,6 +16,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("source", metavar="IN", help="the path of the map")
     parser.add_argument("target", metavar="OUT", help="where the new one goes")
     parser.add_argument("--original", action="store_true", help="write the format of the original Oort instead")
+    add_checksum_argument(parser)
     return parser
 
 
@@ -24,6 +25,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(argv)
     return run_tool(
         "oort migrate",
-        lambda: print(migrate(arguments.source, arguments.target, to_original=arguments.original)),
+        lambda: print(
+            migrate(
+                arguments.source,
+                arguments.target,
+                to_original=arguments.original,
+                ignore_checksum=arguments.ignore_checksum,
+            )
+        ),
         arguments.source,
     )

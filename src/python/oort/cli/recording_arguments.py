@@ -5,6 +5,7 @@
 import argparse
 
 from oort._core import Parameters
+from oort.cli.tool import add_pose_argument
 from oort.recording.open import open_recording
 from oort.recording.types import Recording
 
@@ -16,7 +17,21 @@ def add_recording_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--imu-topic", metavar="TOPIC", help="a bag's IMU: its gyro takes the place of odometry's turns"
     )
+    parser.add_argument("--scan-frame", metavar="FRAME", help="which laser, where a topic has the scans of several")
+    add_pose_argument(
+        parser, "--mount", "where the laser sits on the base [m, rad], where the recording does not tell or tells wrong"
+    )
+    parser.add_argument("--min-range", type=float, metavar="M", help="readings below this are no return")
     parser.add_argument("--max-range", type=float, metavar="M", help="readings beyond this are no return")
+    parser.add_argument(
+        "--mask",
+        type=float,
+        nargs=2,
+        action="append",
+        default=[],
+        metavar=("FROM", "TO"),
+        help="no return counts from one bearing of the laser counter-clockwise to another [rad]; may be repeated",
+    )
 
 
 def recording_of(args: argparse.Namespace, parameters: Parameters) -> Recording:
@@ -26,6 +41,10 @@ def recording_of(args: argparse.Namespace, parameters: Parameters) -> Recording:
         scan_topic=args.scan_topic,
         odom_frame=args.odom_frame,
         imu_topic=args.imu_topic,
+        scan_frame=args.scan_frame,
+        mount=tuple(args.mount) if args.mount else None,
+        min_range=args.min_range,
         max_range=args.max_range,
+        masks=[(begin, end) for begin, end in args.mask],
         parameters=parameters,
     )

@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import run_tool
+from oort.cli.tool import add_checksum_argument, run_tool
 from oort.offline.render import render
 from oort.parameters import read_parameters
 
@@ -19,11 +19,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("map", help="the map's path, with or without .map_capnp")
     parser.add_argument("prefix", metavar="prefix", help="where the pictures go, for example maps/home")
     parser.add_argument("params", nargs="?", help="parameters (default: the packaged params.json)")
+    add_checksum_argument(parser)
     return parser
 
 
 def _run(args: argparse.Namespace) -> None:
-    for line in render(args.map, args.prefix, read_parameters(args.params)):
+    for line in render(args.map, args.prefix, read_parameters(args.params), ignore_checksum=args.ignore_checksum):
         print(line)
 
 

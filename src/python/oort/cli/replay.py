@@ -7,10 +7,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from oort._core import Parameters, load_map, normalise_map_path
+from oort._core import Parameters, normalise_map_path
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import add_pose_argument, parse_arguments, run_tool
-from oort.errors import InputError
+from oort.cli.tool import add_checksum_argument, add_pose_argument, parse_arguments, run_tool
+from oort.errors import InputError, OortError
 from oort.events import read_events
 from oort.localization import find_start
 from oort.offline.replay import ReplayOptions, replay
@@ -18,6 +18,7 @@ from oort.offline.results import write_results
 from oort.parameters import read_parameters
 from oort.recording import Recording
 from oort.report.replay_report import format_table
+from oort.saved_maps import open_map
 
 
 def replay_to_folder(
@@ -39,15 +40,24 @@ def replay_to_folder(
             f"{options.resume[0]}: resuming would overwrite this map; choose another place with --map or --out, or "
             "work in another folder"
         )
+    map_folder = Path(normalise_map_path(map_path)).parent
+    if base and not map_folder.is_dir() and map_folder != folder.absolute():
+        raise InputError(
+            f"{map_folder} is no folder, so the map cannot be saved there; make it, or choose another place"
+        )
     if not options.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
-    report = write_results(replay(recording, parameters, options), folder, map_path)
+    results = write_results(replay(recording, parameters, options), folder, map_path)
     if not options.quiet:
-        print(format_table(report))
-        names = "trajectory.tum map.pgm map.yaml map.png histograms.png graph.g2o report.json"
-        attempts = " closures.csv closures.png" if options.keep_attempts else ""
-        print(f"wrote {folder}: {names}{attempts}; map: {map_path}")
+        for note in results.report["notes"][len(recording.notes) :]:
+            print(f"note: {note}", file=sys.stderr)
+        print(format_table(results.report))
+        print(f"wrote {folder}: {' '.join(name for name in results.written if name != f'the map {map_path}')}")
+    if f"the map {map_path}" in results.written and not options.quiet:
+        print(f"map: {map_path}")
+    if results.failed:
+        raise OortError(f"{'; '.join(results.failed)}. Written all the same: {', '.join(results.written) or 'nothing'}")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -55,13 +65,14 @@ def _parser() -> argparse.ArgumentParser:
         prog="oort replay",
         description="Maps a recorded drive: a ROS 1 bag, a ROS 2 bag or MCAP, or a CARMEN log (.clf, also .gz, .bz2).",
     )
-    parser.add_argument("input", help="the recording")
+    parser.add_argument("input", nargs="+", help="the recording; of a bag that was split, all its parts")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     add_recording_arguments(parser)
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>)")
     parser.add_argument("--map", metavar="BASE", help="base path of the saved map (default: DIR/map)")
     parser.add_argument("--resume", metavar="BASE", help="a saved map to go on with")
     add_pose_argument(parser, "--pose", "the sensor's pose in it at the start [m, rad]; searched for if not given")
+    add_checksum_argument(parser)
     parser.add_argument("--events", metavar="FILE", help="the service calls of the drive, a JSON list of t, call, args")
     parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
     parser.add_argument(
@@ -77,11 +88,15 @@ def _run(args: argparse.Namespace) -> None:
     recording = recording_of(args, parameters)
     resume = None
     if args.resume:
-        pose = tuple(args.pose) if args.pose else find_start(load_map(args.resume), parameters, recording)
+        if args.pose:
+            pose = tuple(args.pose)
+        else:
+            pose = find_start(open_map(args.resume, ignore_checksum=args.ignore_checksum), parameters, recording)
         resume = args.resume, pose
     options = ReplayOptions(
         events=events,
         resume=resume,
+        ignore_checksum=args.ignore_checksum,
         until=args.until,
         quiet=args.quiet,
         keep_attempts=args.closures,
@@ -95,4 +110,4 @@ def main(argv: Sequence[str] | None = None) -> int:
     args = parse_arguments(parser, argv)
     if args.resume is None and args.pose is not None:
         parser.error("--pose is where the robot starts on the map of --resume, which is missing")
-    return run_tool("oort replay", lambda: _run(args), args.input)
+    return run_tool("oort replay", lambda: _run(args), args.input[0])

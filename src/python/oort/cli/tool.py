@@ -40,6 +40,13 @@ def add_pose_argument(parser: argparse.ArgumentParser, name: str, meaning: str) 
     parser.add_argument(name, type=float, nargs=3, metavar=("X", "Y", "THETA"), help=meaning)
 
 
+def add_checksum_argument(parser: argparse.ArgumentParser) -> None:
+    """The option ``--ignore-checksum`` of the tools that read maps."""
+    parser.add_argument(
+        "--ignore-checksum", action="store_true", help="read a map though its checksums are lost or do not fit"
+    )
+
+
 def parse_arguments(parser: argparse.ArgumentParser, argv: Sequence[str] | None) -> argparse.Namespace:
     """Parses arguments (default: those of the process), among them numbers such as -1e-3.
 

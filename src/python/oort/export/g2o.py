@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pose graphs in the g2o format: VERTEX_SE2 and EDGE_SE2."""
+"""Pose graphs in the g2o format, VERTEX_SE2 and EDGE_SE2; TORO's VERTEX2 and EDGE2 are read too."""
 
 import os
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,10 @@ from oort.errors import InputError
 from oort.export.files import decimal, floats, read_text, write_atomically
 
 _UPPER = np.triu_indices(3)
-_FIELDS = {"VERTEX_SE2": 5, "EDGE_SE2": 12}
+_TORO_UPPER = ([0, 0, 1, 2, 0, 1], [0, 1, 1, 2, 2, 2])  # the order in which TORO writes the information
+_VERTICES, _EDGES = {"VERTEX_SE2": 5, "VERTEX2": 5}, {"EDGE_SE2": 12, "EDGE2": 12}
+_FIELDS = {**_VERTICES, **_EDGES}
+_3D = ("VERTEX_SE3:QUAT", "VERTEX_SE3:EULER", "VERTEX3")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,7 +61,7 @@ def write_g2o(path: str | os.PathLike[str], graph: PoseGraph) -> None:
 
 
 def read_g2o(path: str | os.PathLike[str]) -> PoseGraph:
-    """Reads the planar part of a pose graph. Lines other than VERTEX_SE2 and EDGE_SE2 are left out.
+    """Reads the planar part of a pose graph in the format of g2o or of TORO. Other lines are left out.
 
     Raises InputError if the file is missing or holds no vertex, a line is damaged, a vertex is there twice or an edge
     has one that is not there.
@@ -65,25 +70,27 @@ def read_g2o(path: str | os.PathLike[str]) -> PoseGraph:
     vertices: dict[int, list[float]] = {}
     edges: list[tuple[str, list[int]]] = []  # with the place in the file
     measurements, covariances = [], []
+    others: Counter[str] = Counter()
     for number, line in enumerate(read_text(path).splitlines(), 1):
         keyword, *fields = line.split() or [""]
         if keyword not in _FIELDS:
+            others[keyword[:20]] += bool(keyword) and not keyword.startswith("#")
             continue
         where = f"{path}: line {number}"
         if len(fields) + 1 != _FIELDS[keyword]:
             raise InputError(f"{where}: {keyword} must have {_FIELDS[keyword]} fields, but has {len(fields) + 1}")
-        count = 1 if keyword == "VERTEX_SE2" else 2
+        count = 1 if keyword in _VERTICES else 2
         ids, values = _ids(fields[:count], where), floats(fields[count:], where)
-        if keyword == "EDGE_SE2":
+        if keyword in _EDGES:
             edges.append((where, ids))
             measurements.append(values[:3])
-            covariances.append(_covariance(values, where))
+            covariances.append(_covariance(values, _TORO_UPPER if keyword == "EDGE2" else _UPPER, where))
         elif ids[0] in vertices:
             raise InputError(f"{where}: there is a vertex {ids[0]} already; give each an id of its own")
         else:
             vertices[ids[0]] = values
     if not vertices:
-        raise InputError(f"{path} holds no VERTEX_SE2")
+        raise InputError(_no_vertices(path, others, len(edges)))
     for where, ids in edges:
         unknown = [str(id) for id in ids if id not in vertices]
         if unknown:
@@ -99,6 +106,18 @@ def read_g2o(path: str | os.PathLike[str]) -> PoseGraph:
     )
 
 
+def _no_vertices(path: Path, others: Counter[str], edges: int) -> str:
+    """Says what a file holds that has no vertices in the plane."""
+    if any(keyword in others for keyword in _3D):
+        return (
+            f"{path} is a 3D pose graph ({', '.join(sorted(+others)[:4])}); only planar ones (VERTEX_SE2) can be solved"
+        )
+    if edges:
+        return f"{path} holds {edges} edges and no VERTEX_SE2 (or VERTEX2) line: the poses to begin with are missing"
+    held = ", ".join(f"{count} {keyword}" for keyword, count in (+others).most_common(6)) or "no line of text"
+    return f"{path} holds no VERTEX_SE2 (g2o) or VERTEX2 (TORO) line; it holds {held}"
+
+
 def _ids(fields: list[str], where: str) -> list[int]:
     """Ids of vertices. Raises InputError, naming the place, for anything that is no whole number of 64 bits."""
     if not all(len(field) < 20 and field.removeprefix("-").isdecimal() and abs(int(field)) < 2**63 for field in fields):
@@ -106,10 +125,10 @@ def _ids(fields: list[str], where: str) -> list[int]:
     return [int(field) for field in fields]
 
 
-def _covariance(values: list[float], where: str) -> NDArray[np.float64]:
-    """Of an edge: x, y, theta and the upper triangle of the information."""
+def _covariance(values: list[float], order: tuple[Any, Any], where: str) -> NDArray[np.float64]:
+    """Of an edge: x, y, theta and the upper triangle of the information in an order (rows, columns)."""
     information = np.zeros((3, 3))
-    information[_UPPER] = values[3:]
+    information[order] = values[3:]
     information = information + np.triu(information, 1).T
     return _turned(_invert(information, f"{where}: information"), values[2])
 

@@ -22,7 +22,7 @@ from oort.node.settings import read_settings
 def _begin() -> Node:
     settings = read_settings()
     event_log = EventLog(settings.events_log) if settings.events_log else None
-    node = Node(settings.parameters, event_log)
+    node = Node(settings.parameters, event_log, settings.limits)
     try:
         if settings.load:
             node.live.call("map/load", [settings.load])

@@ -15,13 +15,20 @@ from oort.node.running import COMPLAIN
 from oort.node.transforms import Transforms
 from oort.recording import Pose, Scan
 from oort.recording.laser_scan import seconds
+from oort.recording.limits import NO_LIMITS, ScanLimits
 from oort.recording.motion import SNAPSHOT, beam_span
 
 
 class Laser:
     """Takes the scans of the laser whose scan can be used first, and refuses those of others."""
 
-    def __init__(self, transforms: Transforms, compensates_motion: bool, found: Callable[[str, Pose], None]) -> None:
+    def __init__(
+        self,
+        transforms: Transforms,
+        compensates_motion: bool,
+        found: Callable[[str, Pose], None],
+        limits: ScanLimits = NO_LIMITS,
+    ) -> None:
         """``found`` is told of the laser: its frame and T_base_sensor, before its first scan.
 
         ``compensates_motion``: whether a scan waits for the odometry at its last beam, if it took time.
@@ -29,6 +36,7 @@ class Laser:
         self._transforms = transforms
         self._compensates_motion = compensates_motion
         self._found = found
+        self._limits = limits
         self.frame = ""
         """its frame, once it is known"""
 
@@ -52,7 +60,7 @@ class Laser:
             if not self.frame:
                 self._found(sensor_frame, mount.sensor_on_base)
                 self.frame = sensor_frame
-            return to_scan(message, placement, mount.upside_down)
+            return to_scan(message, placement, mount.upside_down, self._limits)
 
         return resolve, partial(resolve, last_resort=True)
 

@@ -26,7 +26,7 @@ from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import String
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
-from oort._core import Map, Parameters, load_map, normalise_map_path, render_map
+from oort._core import Map, Parameters, normalise_map_path, render_map
 from oort.errors import InputError, OortError, StateError
 from oort.live.figures import Figures
 from oort.live.inbox import UNUSABLE, CallItem, Inbox, ScanItem
@@ -38,10 +38,11 @@ from oort.node.last_pose import LastPose
 from oort.node.localizer_health import LocalizerHealth, Sighting
 from oort.node.messages import grid_message, rotation, transform, yaw
 from oort.node.running import repeat, run_node
-from oort.node.settings import read_private
+from oort.node.settings import read_limits, read_private
 from oort.node.transforms import Transforms, frame
 from oort.poses import between, compose
 from oort.recording import Pose, Scan
+from oort.saved_maps import open_map
 
 _TF_PERIOD = 0.05  # [s]
 _HEALTH_PERIOD = 1.0  # [s]
@@ -80,7 +81,9 @@ class LocalizerNode:
         self._broadcaster = tf2_ros.TransformBroadcaster()
         self._inbox = Inbox()
         self._transforms = Transforms(parameters, self._inbox.poke)
-        self._laser = Laser(self._transforms, bool(parameters.get("motion_compensation")), self._laser_found)
+        self._laser = Laser(
+            self._transforms, bool(parameters.get("motion_compensation")), self._laser_found, read_limits()
+        )
         self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
         self._begin(start)
         self._show_map()
@@ -108,7 +111,7 @@ class LocalizerNode:
     # ---- the map and the start ----
 
     def _load(self, base: str) -> None:
-        map_ = load_map(base)
+        map_ = open_map(base)
         self._reference = ReferenceMap(map_, self._parameters)
         self._map: Map = map_
         self._base = normalise_map_path(base)

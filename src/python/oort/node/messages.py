@@ -19,6 +19,7 @@ from oort.errors import InputError
 from oort.recording import Pose, Scan
 from oort.recording.frames import heading, unit_quaternion
 from oort.recording.laser_scan import scan_from_message
+from oort.recording.limits import NO_LIMITS, ScanLimits
 from oort.recording.motion import Placement
 
 
@@ -94,7 +95,7 @@ def yaw(quaternion: Quaternion) -> float:
     return heading(*unit)
 
 
-def to_scan(message: LaserScan, placement: Placement, upside_down: bool) -> Scan:
+def to_scan(message: LaserScan, placement: Placement, upside_down: bool, limits: ScanLimits = NO_LIMITS) -> Scan:
     """A scan with its odometry: the very bits that reading the message from a bag would give."""
     return scan_from_message(
         whole_seconds=message.header.stamp.secs,
@@ -106,4 +107,5 @@ def to_scan(message: LaserScan, placement: Placement, upside_down: bool) -> Scan
         ranges=message.ranges,
         placement=placement,
         upside_down=upside_down,
+        limits=limits,
     )

@@ -28,6 +28,7 @@ from oort.node.running import COMPLAIN, repeat
 from oort.node.services import Services
 from oort.node.transforms import Transforms, frame
 from oort.recording import Pose
+from oort.recording.limits import NO_LIMITS, ScanLimits
 
 _TF_PERIOD = 0.05  # [s]
 _QUEUE_PERIOD = 0.1  # [s]
@@ -37,7 +38,7 @@ _HEALTH_PERIOD = 1.0  # [s]
 class Node(Listener):
     """Topics in, topics out. The callbacks of subscribers only put things into the session's queue."""
 
-    def __init__(self, parameters: Parameters, event_log: EventLog | None) -> None:
+    def __init__(self, parameters: Parameters, event_log: EventLog | None, limits: ScanLimits = NO_LIMITS) -> None:
         """Advertises, subscribes, and offers the services; mapping begins with map/start."""
         self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
         self._sensor_frame = frame(parameters, "sensor")
@@ -52,7 +53,7 @@ class Node(Listener):
         self._broadcaster = tf2_ros.TransformBroadcaster()
 
         self._transforms = Transforms(parameters, self._poke)
-        self._laser = Laser(self._transforms, bool(parameters.get("motion_compensation")), self._laser_found)
+        self._laser = Laser(self._transforms, bool(parameters.get("motion_compensation")), self._laser_found, limits)
         self.live = LiveSession(
             parameters, self, clock=rospy.get_time, localiser=self._sensor_on_map, event_log=event_log
         )

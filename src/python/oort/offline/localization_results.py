@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from oort._core import Map, Parameters, render_map
+from oort._core import Map, Parameters
 from oort.export import write_picture, write_tum
 from oort.export.files import write_atomically
+from oort.offline.drawing import draw_map
 from oort.offline.follow import LocalizedDrive
 
 
@@ -23,9 +24,11 @@ def write_localization(
     """
     out.mkdir(parents=True, exist_ok=True)
     write_tum(out / "trajectory.tum", drive.stamps, drive.base_poses)
-    grid = render_map(map_, parameters)[0]
-    write_picture(out / "map.png", grid.cells, grid.resolution, (*grid.origin, 0.0), trajectory=drive.base_poses)
+    (grid, _), notes = draw_map(map_, parameters)
+    if grid.cells.size:
+        write_picture(out / "map.png", grid.cells, grid.resolution, (*grid.origin, 0.0), trajectory=drive.base_poses)
     report = _report(drive, map_path, parameters)
+    report["notes"] += notes
     write_atomically(out / "report.json", (json.dumps(report, indent=2) + "\n").encode())
     return report
 

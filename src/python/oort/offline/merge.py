@@ -9,17 +9,18 @@ import numpy as np
 from oort._core import (
     Map,
     Merged,
+    OccupancyGrid,
     Parameters,
-    load_map,
     merge_maps,
     normalise_map_path,
-    render_map,
     save_map,
 )
 from oort.errors import InputError
 from oort.export import write_picture
+from oort.offline.drawing import draw_map
 from oort.poses import compose
 from oort.recording import Pose
+from oort.saved_maps import open_map
 
 __all__ = ["Merged", "merge", "merge_maps"]
 
@@ -28,7 +29,15 @@ _SWITCHED_OFF = 0.5
 """A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
 
 
-def merge(first: str, second: str, target: str, parameters: Parameters, at: Pose | None = None) -> Iterator[str]:
+def merge(
+    first: str,
+    second: str,
+    target: str,
+    parameters: Parameters,
+    at: Pose | None = None,
+    *,
+    ignore_checksum: bool = False,
+) -> Iterator[str]:
     """Joins the map at a path with another and saves it, with a picture beside it; yields what to print on the way.
 
     ``at`` is about where the second map's origin lies on the first [m, rad]; found if not given. Raises InputError if
@@ -40,16 +49,19 @@ def merge(first: str, second: str, target: str, parameters: Parameters, at: Pose
         raise InputError(f"{first}: both maps are the same one; give two maps of different drives")
     if paths[2] in paths[:2]:
         raise InputError(f"{target}: the new map would replace one of the two; choose another place")
-    maps = load_map(first), load_map(second)
-    yield f"{first}: {len(maps[0])} nodes"
-    yield f"{second}: {len(maps[1])} nodes"
+    a = open_map(first, ignore_checksum=ignore_checksum)
+    b = open_map(second, ignore_checksum=ignore_checksum)
+    yield f"{first}: {len(a)} nodes"
+    yield f"{second}: {len(b)} nodes"
     yield "looking for where the second map lies on the first, and for closures across"
-    merged = merge_maps(*maps, parameters, at)
+    merged = merge_maps(a, b, parameters, at)
     map_ = merged.map
     save_map(target, map_)
     yield from _told(merged)
     yield f"{target}: {len(map_)} nodes"
-    if _draw(f"{paths[2]}.png", merged, map_, parameters):
+    (grid, _), notes = draw_map(map_, parameters)
+    yield from notes
+    if _draw(f"{paths[2]}.png", merged, map_, grid):
         yield f"wrote {paths[2]}.png"
 
 
@@ -71,9 +83,8 @@ def _told(merged: Merged) -> list[str]:
     return lines
 
 
-def _draw(path: str, merged: Merged, map_: Map, parameters: Parameters) -> bool:
+def _draw(path: str, merged: Merged, map_: Map, grid: OccupancyGrid) -> bool:
     """The map with the second one's way, and the closures across; False if there is nothing to draw."""
-    grid = render_map(map_, parameters)[0]
     if not grid.cells.size:
         return False
     edges, poses = map_.switchable_edges, map_.node_poses

@@ -2,19 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a saved map in the newest format, or as the original Oort did."""
 
-from oort._core import FORMAT_VERSION, load_map, normalise_map_path, read_map_format, save_map
+from oort._core import FORMAT_VERSION, normalise_map_path, read_map_format, save_map
 from oort.errors import InputError
+from oort.saved_maps import open_map
 
 
-def migrate(source: str, target: str, *, to_original: bool = False) -> str:
+def migrate(source: str, target: str, *, to_original: bool = False, ignore_checksum: bool = False) -> str:
     """Writes a map in another format, with the same content; returns what to print.
 
     Raises InputError if both are the same map, and MapFileError.
     """
     if normalise_map_path(source) == normalise_map_path(target):
         raise InputError(f"{target}: the new map would replace the old one; choose another place")
-    old = read_map_format(source)
-    map_ = load_map(source)
+    map_ = open_map(source, ignore_checksum=ignore_checksum)
+    old = read_map_format(source, ignore_checksum=True)
     save_map(target, map_, as_original=to_original)
     writer = f", written by {old.written_by}" if old.written_by else ""
     new = 0 if to_original else FORMAT_VERSION

@@ -4,17 +4,21 @@
 
 from collections.abc import Iterator
 
-from oort._core import Parameters, load_map, render_map
+from oort._core import Parameters
 from oort.errors import InputError
 from oort.export import write_map_server
+from oort.offline.drawing import draw_map
+from oort.saved_maps import open_map
 
 
-def render(map_path: str, prefix: str, parameters: Parameters) -> Iterator[str]:
-    """Writes PREFIX_map and PREFIX_map_cleaned, each .png and .yaml; yields the names of each pair.
+def render(map_path: str, prefix: str, parameters: Parameters, *, ignore_checksum: bool = False) -> Iterator[str]:
+    """Writes PREFIX_map and PREFIX_map_cleaned, each .png and .yaml; yields the names of each pair, after notes.
 
     Raises MapFileError, InputError if there is nothing to draw, and OortError if a file cannot be written.
     """
-    for grid, name in zip(render_map(load_map(map_path), parameters), ("map", "map_cleaned"), strict=True):
+    grids, notes = draw_map(open_map(map_path, ignore_checksum=ignore_checksum), parameters)
+    yield from notes
+    for grid, name in zip(grids, ("map", "map_cleaned"), strict=True):
         if not grid.cells.size:
             raise InputError(f"{map_path}: there is nothing to draw, for no scan of this map has a return")
         base = f"{prefix}_{name}"

@@ -27,6 +27,8 @@ class ReplayOptions:
     events: Sequence[Event] = ()
     resume: tuple[str, Pose] | None = None
     """a map to go on with, and about where the sensor is in it at the start"""
+    ignore_checksum: bool = False
+    """whether the map to go on with is read though its checksums do not fit"""
     until: float | None = None
     """[s] after the first stamp"""
     quiet: bool = False
@@ -63,7 +65,7 @@ def replay(recording: Recording, parameters: Parameters, options: ReplayOptions)
     times: list[float] = []
     scan_hits: list[float] = []
     if options.resume is not None:
-        session.load(options.resume[0])
+        session.load(options.resume[0], ignore_checksum=options.ignore_checksum)
         session.resume("", options.resume[1])
     elif not any(event.call == "map/start" for event in options.events):
         session.start()

@@ -11,18 +11,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from oort._core import Map, Mapper, OccupancyGrid, Parameters, render_map, save_map
+from oort._core import Map, Mapper, OccupancyGrid, Parameters, save_map
 from oort.evaluation.attempts import judge_attempts, write_attempts
 from oort.evaluation.histograms import make_histograms, panels
 from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
 from oort.export.chart import write_chart
 from oort.export.files import write_atomically
+from oort.offline.drawing import draw_map
+from oort.offline.outputs import Outputs
 from oort.offline.trajectory import TrajectoryRecorder
 from oort.recording import Recording
 from oort.report.replay_report import make_report
 from oort.report.stopwatch import Stopwatch
 from oort.session import Session
 
+_RESOLUTION = "output_map.probability_grid.resolution"
 _SWITCHED_OFF = 0.5
 """A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
 
@@ -43,40 +46,76 @@ class Drive:
     """hit fractions of the scans that were matched"""
 
 
-def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Results:
+    """What came of writing a drive's results."""
+
+    report: dict[str, Any]
+    written: Sequence[str]
+    """names of files"""
+    failed: Sequence[str]
+    """a sentence for each file that could not be written"""
+
+
+def write_results(drive: Drive, out: Path, map_path: str) -> Results:
     """Writes the map, and trajectory.tum, map.pgm, .yaml and .png, histograms.png, graph.g2o, report.json to a folder.
 
-    If the drive keeps attempts, closures.csv and closures.png too. Returns the report. Raises OortError if something
-    cannot be written.
+    If the drive keeps attempts, closures.csv and closures.png too. What cannot be written is told in the results, and
+    all else is written all the same. Raises OSError if there can be no folder.
     """
     map_ = drive.session.map
+    outputs = Outputs()
     out.mkdir(parents=True, exist_ok=True)
-    save_map(map_path, map_)
+    outputs.write(f"the map {map_path}", lambda: save_map(map_path, map_))
     base_poses = drive.recorder.base_poses(map_)
-    grid = render_map(map_, drive.parameters)[0]
-    write_tum(out / "trajectory.tum", drive.recorder.stamps, base_poses)
-    write_g2o(out / "graph.g2o", _pose_graph(map_))
-    if grid.cells.size:
-        write_map_server(out / "map", grid.cells, grid.resolution, (*grid.origin, 0.0))
-        closures = _closure_ends(map_)
-        on = map_.switchable_edges["switch"] >= _SWITCHED_OFF
-        write_picture(
+    outputs.write("trajectory.tum", lambda: write_tum(out / "trajectory.tum", drive.recorder.stamps, base_poses))
+    outputs.write("graph.g2o", lambda: write_g2o(out / "graph.g2o", _pose_graph(map_)))
+    drawn = outputs.work_out("any picture of the map", lambda: draw_map(map_, drive.parameters))
+    grid, notes = (drawn[0][0], drawn[1]) if isinstance(drawn, tuple) else (None, [])
+    if grid is not None and grid.cells.size:
+        _write_pictures(drive, out, map_, grid, base_poses, outputs)
+    histograms = _histograms(drive, map_)
+    if panels_ := panels(histograms):
+        outputs.write("histograms.png", lambda: write_chart(out / "histograms.png", panels_))
+    report = _report(drive, map_, grid, histograms, [*notes, *outputs.failed])
+    text = json.dumps(report, indent=2) + "\n"
+    outputs.write("report.json", lambda: write_atomically(out / "report.json", text.encode()))
+    return Results(report, outputs.written, outputs.failed)
+
+
+def _write_pictures(
+    drive: Drive, out: Path, map_: Map, grid: OccupancyGrid, base_poses: NDArray[np.float64], outputs: Outputs
+) -> None:
+    origin = (*grid.origin, 0.0)
+    closures = _closure_ends(map_)
+    on = map_.switchable_edges["switch"] >= _SWITCHED_OFF
+    outputs.write("map.pgm map.yaml", lambda: write_map_server(out / "map", grid.cells, grid.resolution, origin))
+    outputs.write(
+        "map.png",
+        lambda: write_picture(
             out / "map.png",
             grid.cells,
             grid.resolution,
-            (*grid.origin, 0.0),
+            origin,
             trajectory=base_poses,
             accepted=closures[on],
             rejected=closures[~on],
             locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
-        )
-        if drive.keep_attempts:
-            _write_attempts(out, drive.session.mapper, map_, grid)
+        ),
+    )
+    if drive.keep_attempts:
+        outputs.write("closures.csv closures.png", lambda: _write_attempts(out, drive.session.mapper, map_, grid))
+
+
+def _histograms(drive: Drive, map_: Map) -> dict[str, Any]:
     attempts = drive.session.mapper.closure_attempts
     rejected = [hits for _, _, rejection, _, hits in attempts if rejection is not None and hits > 0.0]
-    histograms = make_histograms(map_, drive.scan_hits, rejected)
-    if drawn := panels(histograms):
-        write_chart(out / "histograms.png", drawn)
+    return make_histograms(map_, drive.scan_hits, rejected)
+
+
+def _report(
+    drive: Drive, map_: Map, grid: OccupancyGrid | None, histograms: dict[str, Any], notes: Sequence[str]
+) -> dict[str, Any]:
     report = make_report(
         drive.recording,
         drive.session.mapper.statistics,
@@ -84,16 +123,15 @@ def write_results(drive: Drive, out: Path, map_path: str) -> dict[str, Any]:
         drive.recorded_seconds,
         drive.watch.figures(drive.recorded_seconds, drive.session.mapper.work_seconds),
         {
-            "width": grid.cells.shape[1],
-            "height": grid.cells.shape[0],
-            "resolution": grid.resolution,
+            "width": 0 if grid is None else grid.width,
+            "height": 0 if grid is None else grid.height,
+            "resolution": drive.parameters.get(_RESOLUTION) if grid is None else grid.resolution,
             "switchable_edges": len(map_.switchable_edges["switch"]),
             "switched_off": int((map_.switchable_edges["switch"] < _SWITCHED_OFF).sum()),
         },
         histograms,
     )
-    write_atomically(out / "report.json", (json.dumps(report, indent=2) + "\n").encode())
-    return report
+    return {**report, "notes": [*report["notes"], *notes]}
 
 
 def _write_attempts(out: Path, mapper: Mapper, map_: Map, grid: OccupancyGrid) -> None:

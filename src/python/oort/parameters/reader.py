@@ -5,6 +5,7 @@
 import difflib
 import warnings
 from pathlib import Path
+from typing import Any
 
 from oort._core import Parameters, parameter_table
 from oort.errors import ParameterError
@@ -81,11 +82,20 @@ class _Reader:
                 if not isinstance(member.value, dict):
                     if path in self._sections:
                         raise ParameterError(f"{path}: is a section; it takes {{ }}, not {member.value!r}")
-                    self._parameters.set(path, member.value)
+                    set_parameter(self._parameters, path, member.value)
             except ParameterError as error:
                 raise ParameterError(f"{self._source}:{member.line}: {error}") from None
             if isinstance(member.value, dict):
                 self._apply(member.value, path + ".")
+
+
+def set_parameter(parameters: Parameters, path: str, value: Any) -> None:
+    """Sets a parameter; 3.0 counts as 3 where a whole number is meant, as programs that write JSON or YAML have it.
+
+    Raises ParameterError.
+    """
+    whole = isinstance(value, float) and value.is_integer() and type(parameters.get(path)) is int
+    parameters.set(path, int(value) if whole else value)
 
 
 def unknown_parameter(path: str) -> str:

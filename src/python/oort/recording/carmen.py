@@ -8,6 +8,7 @@ import math
 import zlib
 from collections import Counter
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -16,9 +17,12 @@ from numpy.typing import NDArray
 
 from oort.errors import InputError
 from oort.poses import between
+from oort.recording.limits import ScanLimits
+from oort.recording.scan_fields import find_no_return
 from oort.recording.types import Pose, Recording, Scan
 
 _FLASER_MAX_RANGE = 80.0  # [m]; these lasers report 81.83 and 81.91 for no return
+_SAMPLE = 400  # scans that are looked at more closely, spread over the log
 _MOUNT_TOLERANCE = (0.02, 0.02)  # [m], [rad]: logs are written with as few as two decimals
 _CUT = "The log is cut short here: copy it again, or remove this last line."
 
@@ -32,7 +36,7 @@ class _Reading(NamedTuple):
     laser: Pose  # T_odom_sensor
 
 
-def read_carmen(path: Path, *, name: str, message: str | None, max_range: float | None) -> Recording:
+def read_carmen(path: Path, *, name: str, message: str | None, mount: Pose | None, limits: ScanLimits) -> Recording:
     """Reads a whole CARMEN log. `message` is FLASER or ROBOTLASER1, None for the one there is.
 
     The sensor's place on the base is the difference of the laser's and the robot's pose in the first scan; InputError
@@ -40,7 +44,7 @@ def read_carmen(path: Path, *, name: str, message: str | None, max_range: float 
     """
     if message is not None and message not in _PARSERS:
         raise InputError(f"{path}: {message!r} is not a laser message of a CARMEN log; choose FLASER or ROBOTLASER1")
-    readings, others, notes = _read_messages(path, message, math.inf if max_range is None else max_range)
+    readings, others, notes = _read_messages(path, message)
     filled = [reading for reading in readings if reading.scan.ranges.size]
     if not filled:
         found = ", ".join(f"{count} {keyword[:20]}" for keyword, count in others.most_common(6)) or "no message at all"
@@ -50,18 +54,21 @@ def read_carmen(path: Path, *, name: str, message: str | None, max_range: float 
         )
     if len(filled) < len(readings):
         notes.append(f"scans skipped, without readings: {len(readings) - len(filled)}")
-    scans = [reading.scan for reading in filled]
+    scans, told = _limited([reading.scan for reading in filled], limits)
+    notes += told
+    if mount is not None:
+        notes.append("the laser sits on the base where --mount says, whatever the log tells")
     return Recording(
         name=name,
         kind="CARMEN log",
-        sensor_on_base=_mount(path, filled),
+        sensor_on_base=mount or _mount(path, filled),
         num_scans=len(scans),
         notes=tuple(notes + _notes(scans, others)),
         source=lambda: iter(scans),
     )
 
 
-def _read_messages(path: Path, message: str | None, max_range: float) -> tuple[list[_Reading], Counter[str], list[str]]:
+def _read_messages(path: Path, message: str | None) -> tuple[list[_Reading], Counter[str], list[str]]:
     """All laser messages in the order of the lines, how many other messages there are, and notes."""
     readings: list[_Reading] = []
     others: Counter[str] = Counter()
@@ -80,7 +87,7 @@ def _read_messages(path: Path, message: str | None, max_range: float) -> tuple[l
         elif message is None or keyword == message:
             message = keyword
             try:
-                readings.append(_PARSERS[keyword](fields, max_range))
+                readings.append(_PARSERS[keyword](fields))
             except _MalformedError as error:
                 raise InputError(
                     f"{path}: line {number}: {keyword} {error}. {_CUT if cut else 'Correct or remove the line.'}"
@@ -111,7 +118,7 @@ def _open(path: Path) -> BinaryIO | gzip.GzipFile | bz2.BZ2File:
     return bz2.open(path) if magic == b"BZh" else path.open("rb")
 
 
-def _parse_flaser(fields: list[str], max_range: float) -> _Reading:
+def _parse_flaser(fields: list[str]) -> _Reading:
     """FLASER n r1..rn laser_x y theta robot_x y theta ipc_timestamp hostname logger_timestamp."""
     n = _count(fields, 1)
     _expect(fields, n + 11, f"of {n} readings")
@@ -123,7 +130,7 @@ def _parse_flaser(fields: list[str], max_range: float) -> _Reading:
         angle_min=start,
         angle_increment=increment,
         range_min=0.0,
-        range_max=min(_FLASER_MAX_RANGE, max_range),
+        range_max=_FLASER_MAX_RANGE,
         ranges=_ranges(fields[2 : n + 2]),
         odometry=(poses[3], poses[4], poses[5]),
     )
@@ -140,7 +147,7 @@ def flaser_angles(n: int) -> tuple[float, float]:
     return -math.pi / 2, math.radians(steps[n] if n in steps else 180.0 / max(n, 1))
 
 
-def _parse_robotlaser(fields: list[str], max_range: float) -> _Reading:
+def _parse_robotlaser(fields: list[str]) -> _Reading:
     """ROBOTLASER1 laser_type start_angle field_of_view angular_resolution maximum_range accuracy remission_mode.
 
     Goes on with: n r1..rn m remission1..m laser_x y theta robot_x y theta tv rv forward_safety_dist side_safety_dist
@@ -160,14 +167,14 @@ def _parse_robotlaser(fields: list[str], max_range: float) -> _Reading:
         angle_min=start,
         angle_increment=increment,
         range_min=0.0,
-        range_max=min(own_max_range, max_range),
+        range_max=own_max_range,
         ranges=_ranges(fields[9 : n + 9]),
         odometry=(poses[3], poses[4], poses[5]),
     )
     return _Reading(scan, (poses[0], poses[1], poses[2]))
 
 
-_PARSERS: dict[str, Callable[[list[str], float], _Reading]] = {
+_PARSERS: dict[str, Callable[[list[str]], _Reading]] = {
     "FLASER": _parse_flaser,
     "ROBOTLASER1": _parse_robotlaser,
 }
@@ -216,6 +223,23 @@ def _mount(path: Path, readings: list[_Reading]) -> Pose:
         )
     x, y, theta = mounts[0].tolist()
     return x, y, theta
+
+
+def _limited(scans: list[Scan], limits: ScanLimits) -> tuple[list[Scan], list[str]]:
+    """The scans within limits, where a value that means no return counts as one, and notes."""
+    sample = scans[:: len(scans) // _SAMPLE + 1]
+    within = [scan.ranges[scan.ranges < limits.range_max(scan.range_max)] for scan in sample]
+    beams = sum(len(scan.ranges) for scan in sample)
+    no_return, notes = find_no_return(within, beams)
+    return [
+        replace(
+            scan,
+            range_min=limits.range_min(scan.range_min),
+            range_max=min(limits.range_max(scan.range_max), no_return),
+            ranges=limits.usable(scan.ranges, scan.angle_min, scan.angle_increment),
+        )
+        for scan in scans
+    ], notes
 
 
 def _notes(scans: list[Scan], others: Counter[str]) -> list[str]:

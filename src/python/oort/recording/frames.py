@@ -27,6 +27,8 @@ class Link:
     """(4, 4), the first one"""
     samples: "array[float]" = field(default_factory=lambda: array("d"))
     """time [s], x, y [m], theta [rad] of each, one after another"""
+    by_topic: dict[str, Pose] = field(default_factory=dict)
+    """the first one of each topic that told it"""
 
     def by_time(self) -> NDArray[np.float64]:
         """(n, 4) samples in the order of time; of equal times, in the order of the recording."""
@@ -45,7 +47,13 @@ class FrameTree:
         """how many transforms were left out because they are not finite or have no rotation"""
 
     def add(
-        self, parent: str, child: str, time: float, translation: Sequence[float], quaternion: Sequence[float]
+        self,
+        parent: str,
+        child: str,
+        time: float,
+        translation: Sequence[float],
+        quaternion: Sequence[float],
+        topic: str = "",
     ) -> None:
         """Adds T_parent_child: translation x, y, z [m] and quaternion x, y, z, w of any length but zero."""
         rotation = unit_quaternion(*quaternion)
@@ -55,7 +63,9 @@ class FrameTree:
         parents = self.links.setdefault(child, {})
         if parent not in parents:
             parents[parent] = Link(_matrix(translation, *rotation))
-        parents[parent].samples.extend((time, translation[0], translation[1], heading(*rotation)))
+        pose = translation[0], translation[1], heading(*rotation)
+        parents[parent].samples.extend((time, *pose))
+        parents[parent].by_topic.setdefault(topic, pose)
 
     def above(self, frame: str) -> list[str]:
         """The frame and all frames above it, nearest first."""
@@ -93,7 +103,8 @@ class FrameTree:
         if common is None:
             raise InputError(
                 f"no transform leads from the base's frame {base!r} to the laser's {sensor!r}; the bag has "
-                f"{self.describe()}. Record /tf and /tf_static"
+                f"{self.describe()}. Record /tf and /tf_static, or say where the laser sits with mount (--mount X "
+                "Y THETA)"
             )
         return self.way_up(base, common), self.way_up(sensor, common)
 
@@ -105,7 +116,7 @@ class FrameTree:
             poses = link.by_time()[:, 1:]
             variation = describe_variation(parent, child, poses[0], poses, sensor)
             if variation:
-                raise InputError(variation)
+                raise InputError(variation + _told_by(link))
             total = link.first @ total
         return total
 
@@ -113,6 +124,13 @@ class FrameTree:
         """All links, for messages."""
         pairs = [f"{parent} -> {child}" for child, parents in self.links.items() for parent in parents]
         return ", ".join(sorted(pairs)[:20]) or "no transforms"
+
+
+def _told_by(link: Link) -> str:
+    """What each topic says of a link that several topics tell, and what to do."""
+    said = [f"{topic} says ({x:.3f}, {y:.3f}, {theta:.3f})" for topic, (x, y, theta) in link.by_topic.items()]
+    several = f". {' and '.join(said)}: several programs tell it" if len(said) > 1 else ""
+    return f"{several}; mount (--mount X Y THETA) says where it is"
 
 
 def describe_variation(parent: str, child: str, first: ArrayLike, others: ArrayLike, sensor: str = "laser") -> str:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from oort.recording.limits import NO_LIMITS, ScanLimits
 from oort.recording.motion import Placement
 from oort.recording.types import Scan
 
@@ -27,6 +28,7 @@ def scan_from_message(
     ranges: Sequence[float] | NDArray[np.float32],
     placement: Placement,
     upside_down: bool,
+    limits: ScanLimits = NO_LIMITS,
 ) -> Scan:
     """A Scan of what a LaserScan says in its own frame; `placement` is its odometry.
 
@@ -36,6 +38,7 @@ def scan_from_message(
     sweep = placement.sweep
     values = np.array(ranges, dtype=np.float32)
     angle_min, angle_increment = float(angle_min), float(angle_increment)
+    values = limits.usable(values, angle_min, angle_increment)
     if upside_down:  # mirrored, beam i points where bearing -(angle_min + i * increment) is
         angle_min = -(angle_min + (len(values) - 1) * angle_increment)
         values = values[::-1].copy()
@@ -45,8 +48,8 @@ def scan_from_message(
         stamp=f"{whole_seconds}.{nanoseconds:09d}",
         angle_min=angle_min,
         angle_increment=angle_increment,
-        range_min=float(range_min),
-        range_max=float(range_max),
+        range_min=limits.range_min(range_min),
+        range_max=limits.range_max(range_max),
         ranges=values,
         odometry=placement.odometry,
         sweep=sweep,

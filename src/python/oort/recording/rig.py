@@ -11,6 +11,7 @@ from oort.errors import InputError
 from oort.recording.frames import FrameTree, Link, to_plane
 from oort.recording.gyro import GyroRecord, turned_by_gyro
 from oort.recording.motion import Placement, place
+from oort.recording.scan_fields import ScanFields
 from oort.recording.types import Pose
 
 _GAP = 1.0  # [s]; a longer silence of the odometry is worth a note
@@ -21,6 +22,11 @@ class Survey:
     """What the first pass over a bag finds."""
 
     scan_topic: str
+    scan_frame: str | None
+    """the only frame whose scans count; None for the one there is"""
+    fields: ScanFields
+    compensates: bool
+    """whether motion within a scan counts"""
     tf: FrameTree = field(default_factory=FrameTree)
     odometry: dict[tuple[str, str, str], FrameTree] = field(default_factory=dict)
     """one link each, by topic, frame and child frame"""
@@ -32,8 +38,14 @@ class Survey:
     impossible_spans: int = 0
     """scans whose time_increment cannot be"""
     empty_scans: int = 0
+    other_scans: int = 0
+    """scans in a frame that does not count"""
     gyro: GyroRecord | None = None
     """None unless it is to be used"""
+
+    def is_wanted(self, frame: str) -> bool:
+        """Whether the scans in a frame count."""
+        return self.scan_frame in (None, frame)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,26 +64,34 @@ class Rig:
         return place(lambda time: self.odometry.lookup(time, self.max_extrapolation), stamp, span)
 
 
-def assemble(survey: Survey, odom_frame: str | None, parameters: Parameters) -> Rig:
+def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, parameters: Parameters) -> Rig:
     """Finds the frames and puts odometry and mount together. `odom_frame` is None for a frame called "odom".
 
-    Raises InputError, without the bag's name, if something is missing, ambiguous or not as a planar laser needs it.
+    `mount` is T_base_sensor where a person gives it, whatever transforms say. Raises InputError, without the bag's
+    name, if something is missing, ambiguous or not as a planar laser needs it.
     """
-    if not survey.scan_times:
-        raise InputError(f"no scan with readings on {survey.scan_topic} ({survey.empty_scans} without)")
-    if len(survey.scan_frames) > 1:
-        raise InputError(f"the scans on {survey.scan_topic} are in several frames: {', '.join(survey.scan_frames)}")
-    sensor = next(iter(survey.scan_frames))
+    sensor = _scan_frame(survey)
     notes = []
-    odom, base, link, origin = _find_odometry(survey, sensor, odom_frame)
-    notes.append(f"scans on {survey.scan_topic} in frame {sensor}; odometry {odom} -> {base} from {origin}")
+    odom, base, link, origin = _find_odometry(survey, sensor, odom_frame, anywhere=mount is not None)
+    notes.append(
+        f"scans on {survey.scan_topic} in frame {sensor}; odometry {odom} -> {base or 'the base'} from {origin}"
+    )
     for parent, ignored in survey.tf.links.get(odom, {}).items():
         notes.append(f"ignored {parent} -> {odom} of another program ({len(ignored.samples) // 4} transforms)")
     if survey.tf.unusable:
         notes.append(f"{survey.tf.unusable} transforms that are not finite or have no rotation were ignored")
-    if sensor == base:
-        notes.append(f"the scans are in the base's own frame: the sensor is taken to sit at {base}")
-    sensor_on_base, upside_down = to_plane(survey.tf.mount(base, sensor), sensor)
+    if mount is not None:
+        sensor_on_base, upside_down = mount, False
+        notes.append("the laser sits on the base where --mount says, upright, whatever transforms tell")
+    else:
+        if sensor == base:
+            notes.append(f"the scans are in the base's own frame: the sensor is taken to sit at {base}")
+        if not base:
+            raise InputError(
+                f"{origin} has no child_frame_id, so whose odometry it is, and where the laser sits there, is not "
+                "known; say where the laser sits with mount (--mount X Y THETA)"
+            )
+        sensor_on_base, upside_down = to_plane(survey.tf.mount(base, sensor), sensor)
     if upside_down:
         notes.append("the laser hangs upside down: its beams were turned round")
     if survey.impossible_spans:
@@ -93,25 +113,66 @@ def assemble(survey: Survey, odom_frame: str | None, parameters: Parameters) -> 
     return Rig(sensor_on_base, upside_down, buffer, float(parameters.get("max_extrapolation")), tuple(notes))
 
 
-def _find_odometry(survey: Survey, sensor: str, wanted: str | None) -> tuple[str, str, Link, str]:
-    """The odometry frame, the base frame, T_odom_base over time, and where it is from: tf before topics."""
+def _scan_frame(survey: Survey) -> str:
+    """The frame that the scans are in. Raises InputError if there are none, or they are in several."""
+    if survey.scan_frame is not None and survey.scan_frame not in survey.scan_frames:
+        frames = ", ".join(survey.scan_frames) or "none"
+        raise InputError(f"no scan on {survey.scan_topic} is in frame {survey.scan_frame}; frames there: {frames}")
+    if not survey.scan_times:
+        raise InputError(f"no scan with readings on {survey.scan_topic} ({survey.empty_scans} without)")
+    if survey.scan_frame is None and len(survey.scan_frames) > 1:
+        raise InputError(
+            f"the scans on {survey.scan_topic} are in several frames: {', '.join(survey.scan_frames)}; only one laser "
+            "can be used: choose it with scan_frame (--scan-frame)"
+        )
+    return survey.scan_frame or next(iter(survey.scan_frames))
+
+
+def _find_odometry(survey: Survey, sensor: str, wanted: str | None, *, anywhere: bool) -> tuple[str, str, Link, str]:
+    """The odometry frame, the base frame, T_odom_base over time, and where it is from: tf before topics.
+
+    `anywhere`: whether the frames need not be above the sensor's, as that sits on the base by a person's word.
+    """
     above = survey.tf.above(sensor)
-    names = [frame for frame in above[1:] if (frame == wanted if wanted else frame.split("/")[-1] == "odom")]
+    names = _named(above[1:], wanted)
+    if not names and anywhere:
+        parents = {parent: None for links in survey.tf.links.values() for parent in links}
+        names = _named(list(parents), wanted)
     if len(names) > 1:
         raise InputError(
             f"several odometry frames above {sensor}; choose one with odom_frame (--odom-frame): {', '.join(names)}"
         )
+    static = ""
     if names:
-        base, odom = survey.tf.way_up(sensor, names[0])[-2:]
-        return odom, base, survey.tf.links[base][odom], "tf"
+        base, odom = _base_and_odom(survey, sensor, names[0])
+        link = survey.tf.links[base][odom]
+        if not all(topic.split("/")[-1] == "tf_static" for topic in link.by_topic):
+            return odom, base, link, "tf"
+        static = f"{odom} -> {base} is a static transform, told once on /tf_static: that is no odometry"
     choices = {key: tree for key, tree in survey.odometry.items() if wanted in (None, key[1]) and tree.links}
     if not choices:
-        raise InputError(_no_odometry(survey, sensor, wanted, above))
+        raise InputError(static or _no_odometry(survey, sensor, wanted, above))
     if len(choices) > 1:
         listed = ", ".join(f"{topic} ({odom} -> {base})" for topic, odom, base in choices)
         raise InputError(f"several odometries; choose one by its frame with odom_frame (--odom-frame): {listed}")
     ((topic, odom, base), tree) = next(iter(choices.items()))
     return odom, base, tree.links[base][odom], topic
+
+
+def _named(frames: list[str], wanted: str | None) -> list[str]:
+    """The frames that are called so or, if nothing is wanted, "odom"."""
+    return [frame for frame in frames if (frame == wanted if wanted else frame.split("/")[-1] == "odom")]
+
+
+def _base_and_odom(survey: Survey, sensor: str, odom: str) -> tuple[str, str]:
+    """The frame under the odometry frame, and that one. Raises InputError if the sensor is under none of several."""
+    way = survey.tf.way_up(sensor, odom)
+    if way:
+        return way[-2], way[-1]
+    children = [child for child, parents in survey.tf.links.items() if odom in parents]
+    if len(children) > 1:
+        raise InputError(f"several frames move in {odom}: {', '.join(children)}; which is the base is not known")
+    return children[0], odom
 
 
 def _no_odometry(survey: Survey, sensor: str, wanted: str | None, above: list[str]) -> str:
@@ -120,4 +181,17 @@ def _no_odometry(survey: Survey, sensor: str, wanted: str | None, above: list[st
     return (
         f"no odometry: no frame {wanted or 'odom'} above the laser's frame {sensor}. Frames above it: {frames}; "
         f"odometry topics: {topics}. Name the odometry frame with odom_frame (--odom-frame), or record /tf or /odom"
+        + _gap(survey, wanted)
+    )
+
+
+def _gap(survey: Survey, wanted: str | None) -> str:
+    """What to do where tf has an odometry frame, but not above the laser."""
+    links = [(odom, base) for base, parents in survey.tf.links.items() for odom in _named(list(parents), wanted)]
+    listed = ", ".join(f"{odom} -> {base}" for odom, base in links)
+    return (
+        f". There is {listed}, from which no transform leads to the laser: say where it sits on the base with mount "
+        "(--mount X Y THETA)"
+        if links
+        else ""
     )
