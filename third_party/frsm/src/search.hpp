@@ -72,7 +72,7 @@ struct Search {
   Objective objective;
   std::optional<Exclusion> exclusion;
   double floor = -std::numeric_limits<double>::infinity();  // candidates of less value do not count
-  OnLookups on_lookups;
+  OnLookups on_lookups = {};
 
   /// Strict order of candidates: by value, then nearest to the guess, then by index; never equal for different poses.
   bool better(const Candidate& a, const Candidate& b) const;
