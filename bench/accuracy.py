@@ -6,8 +6,7 @@
     .venv/bin/python bench/accuracy.py --compare OLD.json NEW.json
 
 Prints tables and writes results.json into --keep; simulated drives are kept there too and made only once. The logs are
-found through OORT_DATASETS (default ../shared/datasets). --worst K leaves maps and pictures of the K worst simulated
-drives of each row.
+found through OORT_DATASETS. --worst K leaves maps and pictures of the K worst simulated drives of each row.
 """
 
 import argparse

@@ -5,8 +5,8 @@
     .venv/bin/python bench/graphs.py [--counts 0 10 100 1000 5000] [--kinds random ...] [--seeds 10] [--scale 2 4]
         [--gtsam PYTHON [--methods plain gnc dcs] [--gtsam-seeds 1] [--limit 120]] [--closing]
 
-Manhattan 3500 (with its truth) is found through OORT_DATASETS (default ../shared/datasets). PYTHON is one that has
-GTSAM (`python3 -m venv DIR; DIR/bin/pip install gtsam`). --closing prints what closing a loop costs in long drives.
+Manhattan 3500 (with its truth) is found through OORT_DATASETS. PYTHON is one that has GTSAM
+(`python3 -m venv DIR; DIR/bin/pip install gtsam`). --closing prints what closing a loop costs in long drives.
 """
 
 import argparse
@@ -37,10 +37,9 @@ from false_closures import (
 from oort import _core
 from oort.evaluation.graph import position_rmse
 from oort.export.g2o import PoseGraph, read_g2o
+from trials.datasets import datasets
 
 ROOT = Path(__file__).resolve().parents[1]
-FOLDER = Path(os.environ.get("OORT_DATASETS", ROOT / "../shared/datasets")) / "posegraphs"
-
 
 BENT = 0.8
 """A map of Manhattan is bent if its error is above this [m]; without false closures it is 0.797 m."""
@@ -122,8 +121,9 @@ def row(name: str, count: int, kind: str, outcomes: list[Outcome], groups: str =
 
 
 def measure_manhattan(args: argparse.Namespace) -> Iterator[str]:
-    manhattan = read_g2o(FOLDER / "manhattanOlson3500.g2o")
-    truth = np.loadtxt(FOLDER / "manhattan_nodes_groundTruth.dat")
+    folder = datasets() / "posegraphs"
+    manhattan = read_g2o(folder / "manhattanOlson3500.g2o")
+    truth = np.loadtxt(folder / "manhattan_nodes_groundTruth.dat")
     clean = {scale: optimise(manhattan, scale)[0] for scale in args.scale}
     yield (
         "| false | kind | solver | graphs | RMSE, m, median / worst | CPU s, median / worst | kept | bent | cheaper |"
@@ -183,7 +183,7 @@ def main() -> int:
         return 0
     print("| graph | scale | RMSE to plain least squares, m | closures off |\n|---|---|---|---|")
     for name in ("manhattanOlson3500", "intel"):
-        for line in measure_clean(read_g2o(FOLDER / f"{name}.g2o"), name, args.scale):
+        for line in measure_clean(read_g2o(datasets() / "posegraphs" / f"{name}.g2o"), name, args.scale):
             print(line, flush=True)
     print()
     for line in measure_manhattan(args):

@@ -30,11 +30,10 @@ from oort.poses import Array, compose
 from oort.recording import Recording, Scan, open_recording
 from relocalisation import Homes
 from trials.closures import ON, false_closures
+from trials.datasets import datasets
 from trials.drives import Recipe
 from trials.tables import print_table
 from trials.truth import true_nodes
-
-ROOT = Path(__file__).resolve().parents[1]
 
 LOGS = ("fr079", "intel", "fr079:3", "intel:3")
 """Names of logs, and the range beyond which readings are cut [m]."""
@@ -206,7 +205,6 @@ def summarise(found: list[dict[str, Any]]) -> list[str]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--logs", nargs="*", choices=LOGS, default=LOGS, metavar="LOG", help=", ".join(LOGS))
-    parser.add_argument("--data", default=str(ROOT / "../shared/datasets"), metavar="DIR", help="where radish/ is")
     parser.add_argument("--rows", nargs="*", choices=ROWS, default=ROWS, metavar="ROW", help=", ".join(ROWS))
     parser.add_argument("--homes", type=int, default=10, metavar="N", help="how many homes")
     parser.add_argument("--first", type=int, default=1, metavar="SEED", help="the first one's seed")
@@ -218,7 +216,7 @@ def main() -> int:
     rows: dict[str, list[str]] = {}
     with tempfile.TemporaryDirectory() as scratch:
         for log in args.logs:
-            logs |= measure_log(log, Path(args.data) / "radish", parameters, Path(scratch))
+            logs |= measure_log(log, datasets() / "radish", parameters, Path(scratch))
         homes = Homes(Path(args.keep or scratch), parameters)
         for row in args.rows:
             found = []

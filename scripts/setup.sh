@@ -27,7 +27,7 @@ if [ $ros = ON ]; then
   done
   packages+=(python3-genpy)
 fi
-[ $test = ON ] && packages+=(libgtest-dev)
+[ $test = ON ] && packages+=(libgtest-dev clang-format-14 clang-tidy-14)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
@@ -47,7 +47,8 @@ fi
 .venv/bin/python -m pip install --quiet --disable-pip-version-check "pip>=23.1"  # the first with -C
 .venv/bin/pip install --quiet "scikit-build-core>=0.10" "pybind11>=2.12"
 echo "Building Oort; the first time that takes some minutes."
-.venv/bin/pip install --quiet --no-build-isolation -C build-dir=build/dev -C cmake.define.OORT_TESTS=$test -e ".$extra"
+.venv/bin/pip install --quiet --no-build-isolation -C build-dir=build/dev \
+  -C cmake.define.OORT_TESTS=$test -C cmake.define.OORT_WERROR=$test -e ".$extra"
 if [ -d .venv/share/oort ]; then
   echo "The ROS node is there: source .venv/share/oort/setup.bash && rosrun oort oort_ros"
 else

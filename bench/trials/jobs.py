@@ -3,7 +3,6 @@
 """One drive of a row: what it is, and what is measured of it."""
 
 import math
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from oort.poses import Array
 from oort.recording import open_recording
 from oort.simulate import Drive
 from trials.closures import closure_figures
+from trials.datasets import datasets
 from trials.drives import DriveStore, Recipe, events_of, recording_of
 from trials.pictures import draw
 from trials.replays import Replayed, cost, counts, replay
@@ -82,7 +82,7 @@ class Bench:
         return replay(recording_of(drive, recipe.name), self.parameters, events_of(drive), mark)
 
     def _run_log(self, name: str, log: Log) -> Figures:
-        folder = Path(os.environ.get("OORT_DATASETS", ROOT / "../shared/datasets")) / "radish"
+        folder = datasets() / "radish"
         replayed = replay(open_recording(folder / f"{log.name}.clf.bz2", max_range=log.max_range), self.parameters)
         out = self.keep / name
         write_results(replayed.drive, out, str(out.absolute() / "map"))

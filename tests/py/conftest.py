@@ -19,9 +19,11 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="session")
 def datasets() -> Path:
     """The folder with the real data; tests that need it say plainly that they were skipped where it is absent."""
-    path = Path(os.environ.get("OORT_DATASETS", ROOT / "../shared/datasets")).resolve()
-    if not path.is_dir():
-        pytest.skip(f"real data not found at {path} (set OORT_DATASETS)")
+    folder = os.environ.get("OORT_DATASETS")
+    if not folder:
+        pytest.skip("OORT_DATASETS is not set: it names the folder with real data, see docs/datasets.md")
+    path = Path(folder).resolve()
+    assert path.is_dir(), f"OORT_DATASETS is {folder}, which is not a folder"
     return path
 
 

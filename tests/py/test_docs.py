@@ -14,7 +14,11 @@ from oort.simulate import SimulationConfig, simulate_drive
 from oort.simulate.writers import write_drive
 
 USAGE = (ROOT / "docs/usage.md").read_text(encoding="utf-8")
-PAGES = ["README.md", *(str(page.relative_to(ROOT)) for page in sorted((ROOT / "docs").glob("*.md")))]
+PAGES = [
+    "README.md",
+    "CONTRIBUTING.md",
+    *(str(page.relative_to(ROOT)) for page in sorted((ROOT / "docs").glob("*.md"))),
+]
 
 
 def _examples(page: str) -> list[str]:

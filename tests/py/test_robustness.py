@@ -136,7 +136,7 @@ def test_calls_out_of_order_take_effect_at_their_own_time(log: Path, tmp_path: P
 
 
 def test_going_on_with_a_map_never_overwrites_it(log: Path, tmp_path: Path) -> None:
-    """O-26: the old file is not touched. The default folder of a second replay is that of the first."""
+    """The old file is not touched. The default folder of a second replay is that of the first."""
     out = tmp_path / "out"
     assert replay(log, out) == 0
     old = (out / "map.map_capnp").read_bytes()

@@ -86,7 +86,9 @@ TEST(Localizer, IsFoundAgainAfterItWasCarriedAway) {
     const auto state = localizer.add_scan(see(make_room(), after[k] * kMount, 0.0), odometry[k]);
     was_uncertain = was_uncertain || state != LocalizationState::kTracking;
     if (state != LocalizationState::kTracking) continue;
-    if (was_uncertain) EXPECT_LT(between(after[k] * kMount, *localizer.T_map_sensor()).translation().norm(), 0.05);
+    if (was_uncertain) {
+      EXPECT_LT(between(after[k] * kMount, *localizer.T_map_sensor()).translation().norm(), 0.05);
+    }
   }
   EXPECT_TRUE(was_uncertain);
   EXPECT_EQ(localizer.state(), LocalizationState::kTracking);
@@ -101,7 +103,9 @@ TEST(Localizer, WhatWasSeenBeforeOutweighsScansThatFitSomewhereElse) {
     const bool is_blind = k >= 50 && k < 80;  // odometry alone, which makes the search window wide
     const Pose2 seen = k < 80 ? truth[k] : Pose2{0.25, 0.0, 0.0} * truth[k];
     localizer.add_scan(see(is_blind ? testing::World{} : make_room(), seen * kMount, 0.0), truth[k]);
-    if (k == 79) EXPECT_GT(std::sqrt(localizer.covariance()(0, 0)), 0.08);
+    if (k == 79) {
+      EXPECT_GT(std::sqrt(localizer.covariance()(0, 0)), 0.08);
+    }
   }
   EXPECT_GT(localizer.statistics().match_rejections[Rejection::kContradictsEarlierViews], 0U);
   EXPECT_LT(between(truth[89] * kMount, *localizer.T_map_sensor()).translation().norm(), 0.05);

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "cloud_edits.hpp"
+#include "datasets.hpp"
 #include "mapping_fixtures.hpp"
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/storage/map_file.hpp"
@@ -16,9 +17,9 @@ namespace {
 class GenuineDockTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string data = testing::datasets();
-    if (data.empty()) GTEST_SKIP() << "real data not found (set OORT_DATASETS)";
-    map = load_map(data + "/kuri_oort_map/map");
+    const std::filesystem::path folder = testing::datasets() / "kuri_oort_map";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << testing::not_found(folder);
+    map = load_map(folder / "map");
   }
   Map map;
 };

@@ -159,7 +159,7 @@ TEST_F(ClosureTest, OppositeMatchesHaveThresholdsOfTheirOwn) {
   EXPECT_EQ(verdict(), Rejection::kNone);
   filter.match_hitpct_threshold_opposite_dir = hits;
   EXPECT_EQ(verdict(), Rejection::kHits);
-  filter.match_hitpct_threshold_high_opposite_dir = below(hits);  // C-17: the second key is the high one
+  filter.match_hitpct_threshold_high_opposite_dir = below(hits);  // the second key is the high one
   EXPECT_EQ(verdict(), Rejection::kNone);
   filter.match_max_dist_high = 0.29;
   EXPECT_NE(verdict(), Rejection::kNone);
@@ -169,7 +169,7 @@ TEST_F(ClosureTest, CloseMatchNeedsAtLeastItsHitThreshold) {
   set_close();
   filter.match_max_dist = filter.match_max_dist_high = 0.0;  // do not count here
   const double hits = find().value().hit_fraction;
-  filter.close_node_hitpct_threshold = hits;  // C-22: "at least"
+  filter.close_node_hitpct_threshold = hits;  // "at least"
   EXPECT_EQ(verdict(), Rejection::kNone);
   filter.close_node_hitpct_threshold = above(hits);
   EXPECT_EQ(verdict(), Rejection::kCloseHits);

@@ -177,7 +177,7 @@ TEST_F(MapperTest, MapIsWellFormed) {
   for (std::size_t k = 0; k < map.graph.switchable_edges.size(); ++k) {
     const SwitchableEdge& edge = map.graph.switchable_edges[k];
     EXPECT_TRUE(ids.insert(edge.id).second);
-    EXPECT_GT(edge.i, edge.j);  // C-24: from the newer node to the candidate
+    EXPECT_GT(edge.i, edge.j);  // from the newer node to the candidate
     EXPECT_EQ(map.loop_results[k].id, edge.i);
     EXPECT_EQ(map.loop_results[k].target, edge.j);
   }

@@ -71,7 +71,9 @@ TEST(Sweep, EachPointComesToWhereItIsFromTheStamp) {
         const double truth = range_to(room, eye.translation(), eye.theta + std::atan2(p.y, p.x));
         // Behind an edge the moved sensor sees what the standing one does not: such points are not nearer than the
         // edge.
-        if (range < truth + 0.02) EXPECT_NEAR(range, truth, 1e-4);
+        if (range < truth + 0.02) {
+          EXPECT_NEAR(range, truth, 1e-4);
+        }
       }
       const auto fits = std::count_if(cloud.points.begin(), cloud.points.end(), [&](const Point2& p) {
         const Pose2 eye = base * kMount;

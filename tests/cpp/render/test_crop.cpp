@@ -23,8 +23,7 @@ TEST(Crop, KeepsTheNodesInTheBoxWithTheBeamsThatEndThere) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   PointCloud cloud;
   cloud.points = {{5.0, 0.0, 1.0}, {50.0, 0.0, 1.0}, {nan, 0.5, nan}, {0.0, 8.0, 1.0}};
-  const Cropped cropped =
-      crop({node_at(0.0, 4.0, 0.0), node_at(400.0, 0.0, 0.0)}, PointClouds({cloud, cloud}), kBox);
+  const Cropped cropped = crop({node_at(0.0, 4.0, 0.0), node_at(400.0, 0.0, 0.0)}, PointClouds({cloud, cloud}), kBox);
   ASSERT_EQ(cropped.nodes.size(), 1u);
   ASSERT_EQ(cropped.clouds.size(), 1u);
   const std::vector<Point2>& points = cropped.clouds[0].points;

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "cloud_edits.hpp"
+#include "datasets.hpp"
 #include "oort/geometry/errors.hpp"
 #include "oort/storage/codec.hpp"
 #include "oort/storage/file_set.hpp"
@@ -303,10 +304,8 @@ TEST_F(Storage, SavingAndLoadingTakeTurns) {
 // ---- the map that Mayfield's Oort wrote ----
 
 TEST_F(Storage, TheGenuineMapComesBackByteForByte) {
-  const char* datasets = std::getenv("OORT_DATASETS");
-  const fs::path root = fs::path(__FILE__).parent_path() / "../..";
-  const fs::path genuine = (datasets ? fs::path(datasets) : root / "../shared/datasets") / "kuri_oort_map";
-  if (!fs::exists(genuine)) GTEST_SKIP() << genuine << " is not there; set OORT_DATASETS";
+  const fs::path genuine = testing::datasets() / "kuri_oort_map";
+  if (!fs::exists(genuine)) GTEST_SKIP() << testing::not_found(genuine);
   for (const std::string& suffix : kSuffixes) fs::copy(genuine / ("map" + suffix), folder_ / ("map" + suffix));
   const Map map = load_map(folder_ / "map");
   EXPECT_EQ(map.graph.nodes.size(), 9U);

@@ -251,6 +251,6 @@ def test_as_typed(ros: Core, client: Client, places: list[tuple[str, str]]) -> N
     kitchen = " ".join(typed("/oort_slam/graph_loc/list", "kitchen", "true").split())
     assert kitchen == "nspaces: - kitchen - kitchen - kitchen/table ids: - '1' - '2' - '1'"
     assert 'frame_id: "map"' in typed("/oort_slam/graph_loc/locate", "dock", "dock")
-    half = ros.run("rosservice", "call", "/oort_slam/graph_loc/create", "dock")  # it has two fields (C-8)
+    half = ros.run("rosservice", "call", "/oort_slam/graph_loc/create", "dock")  # it has two fields
     assert half.returncode == 2
     assert "Expected: ['nspace', 'id']" in half.stderr

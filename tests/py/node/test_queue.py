@@ -176,7 +176,7 @@ def test_places_are_known_in_their_turn(client: Client, robot: Robot) -> None:
 
 
 def test_create_right_after_start(client: Client, robot: Robot) -> None:
-    """Clients of the original had to wait a second, for there was no pose yet (O-57)."""
+    """Clients of the original had to wait a second, for there was no pose yet."""
     robot.laser_on = True
     received = counted()[0]
     until(lambda: counted()[0] > received, "scans arrive")
@@ -216,7 +216,7 @@ def test_readers_do_not_wait_for_a_busy_node(client: Client, robot: Robot) -> No
 
 
 def test_many_clients_at_once(client: Client, robot: Robot) -> None:
-    """No answer gets lost, and every place is there in the end (O-10)."""
+    """No answer gets lost, and every place is there in the end."""
     client.call("map/start", "")
     robot.laser_on = True
     until(lambda: client.call("graph_loc/is_ready"), "the node is ready")

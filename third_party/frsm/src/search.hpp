@@ -71,7 +71,7 @@ struct Search {
   Objective objective;
   std::optional<Exclusion> exclusion;
   std::uint32_t least_sum = 0;  // candidates of a smaller sum do not count
-  OnLookups on_lookups;
+  OnLookups on_lookups = {};
 
   /// Strict order of candidates: by value, then nearest to the guess, then by index; never equal for different poses.
   bool better(const Candidate& a, const Candidate& b) const;

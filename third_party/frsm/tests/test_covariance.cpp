@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-// What a match says of its own accuracy (T-10) and what it does where it sees nothing (T-11).
+// What a match says of its own accuracy and what it does where it sees nothing.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -35,7 +35,7 @@ Trial run(const test::Scene& scene, const Sensor& sensor, const Pose& seen_from,
   return trial;
 }
 
-// T-10. The default information_scale is for 1.5 cm of range noise.
+// The default information_scale is for 1.5 cm of range noise.
 TEST(Covariance, ErrorsAreAsLargeAsItSaysInARoom) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> small(-0.08, 0.08);
@@ -104,7 +104,6 @@ TEST(Covariance, SmallFeatureInACorridorIsSeen) {
   }
 }
 
-// T-11
 TEST(Prior, LeadsAlongACorridor) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> off(-0.1, 0.1);

@@ -32,7 +32,6 @@ void expect_sound(const Match& match) {
   EXPECT_TRUE(match.information.allFinite());
 }
 
-// T-4
 TEST(Matcher, IdenticalScanComesBackInPlace) {
   std::mt19937 random(1);
   for (const double heading : {0.0, 0.3, 1.1, -2.5}) {
@@ -48,7 +47,6 @@ TEST(Matcher, IdenticalScanComesBackInPlace) {
   }
 }
 
-// T-5
 TEST(Matcher, FindsKnownOffsetsInATurnedRoom) {
   std::mt19937 random(2);
   std::vector<double> distances, turns;
@@ -75,7 +73,7 @@ TEST(Matcher, FindsKnownOffsetsInATurnedRoom) {
   EXPECT_LT(distances[123], 1e-2);
 }
 
-// T-6: a narrow view from outside the drawn area.
+// A narrow view from outside the drawn area.
 TEST(Matcher, RobotOutsideTheDrawnAreaStaysWhereItIs) {
   std::mt19937 random(3);
   const test::Scene scene = {{{3.0, -2.0}, {3.0, 0.8}}, {{3.0, 0.8}, {3.6, 0.8}}, {{3.6, 0.8}, {3.6, 3.0}}};
@@ -171,7 +169,6 @@ TEST(Matcher, PriorDecidesBetweenEqualPeaks) {
   }
 }
 
-// T-14, E-2 to E-4, E-7
 TEST(Matcher, SaysWhyThereIsNoMatch) {
   std::mt19937 random(7);
   const Pose pose{0.1, 0.3, 0.2};

@@ -40,7 +40,7 @@ std::uint32_t plain_sum(const Table& table, const std::vector<Cell>& cells, int 
   return sum;
 }
 
-// T-9. More than 256 points, so that the 16-bit sums are flushed; some on the table, some partly and some wholly off
+// More than 256 points, so that the 16-bit sums are flushed; some on the table, some partly and some wholly off
 // it.
 TEST(Slice, EqualsPlainSumsForEveryWindow) {
   Random random(1);
@@ -67,7 +67,6 @@ TEST(Slice, LargestSumsDoNotOverflow) {
   EXPECT_EQ(slice.sum(0, 0), 2000U * 255U);
 }
 
-// T-7
 TEST(Pyramid, NoValueIsBelowAnyItCovers) {
   Random random(2);
   for (int trial = 0; trial < 100; ++trial) {
@@ -150,7 +149,6 @@ Search random_search(Random* random, const Table& table, const Points& body, con
   return search;
 }
 
-// T-8
 TEST(BranchAndBound, FindsWhatTryingAllFinds) {
   Random random(4);
   for (int trial = 0; trial < 600; ++trial) {
@@ -179,7 +177,6 @@ TEST(BranchAndBound, FindsWhatTryingAllFindsInRoomsAndCorridors) {
   }
 }
 
-// E-5
 TEST(Search, EqualScoresGoToTheNearestOfTheGuess) {
   Table table;
   table.draw({{-5.0, 1.0}, {5.0, 1.0}}, {{0, 1}}, {});

@@ -189,7 +189,7 @@ TEST(Table, NamesTheParameterThatMakesNoSense) {
   EXPECT_THROW(Table{params}, std::invalid_argument);
 }
 
-// T-13: one dot per scan, in a row, so that each cell tells which scan drew it.
+// One dot per scan, in a row, so that each cell tells which scan drew it.
 TEST(History, HoldsBetweenHalfAndAllOfTheLastScans) {
   constexpr int kMax = 8;
   History history({}, kMax);

@@ -51,7 +51,6 @@ TEST(Tracker, FollowsADriveWithoutOdometry) {
   }
 }
 
-// T-12
 TEST(Tracker, AddsByTheRule) {
   TrackerParams params;
   params.add.key_distance = params.add.key_angle = std::numeric_limits<double>::infinity();
@@ -186,7 +185,6 @@ TEST(Tracker, StartsAfreshWhenNothingFits) {
   EXPECT_LT(distance(tracker.pose(), start), 0.02);
 }
 
-// E-1 to E-4
 TEST(Tracker, BlindMomentsAreBridgedByOdometry) {
   const auto steps = drive(test::room(), 60, 13);
   Tracker tracker;
@@ -226,7 +224,6 @@ TEST(Tracker, AFewHitsAfterAGapAreNotBelieved) {
   EXPECT_TRUE(!tracker.matched() || match.hit_fraction >= 0.8) << to_string(match.status) << " " << match.hit_fraction;
 }
 
-// T-15
 TEST(Tracker, TwoRunsGiveTheSameBytes) {
   const auto steps = drive(test::room(), 120, 14);
   std::vector<Match> first;
@@ -258,7 +255,6 @@ TEST(Tracker, ResetForgetsEverything) {
   }
 }
 
-// T-16
 TEST(Tracker, TrajectoryMovesWithItsStart) {
   const auto steps = drive(test::room(), 100, 16);
   for (const Pose& start : {Pose{100.3, -57.7, 1.0}, Pose{0.007, 0.013, -2.9}}) {
@@ -274,7 +270,7 @@ TEST(Tracker, TrajectoryMovesWithItsStart) {
   }
 }
 
-// T-11, over a drive: with an odometry 2 % too long, the estimate follows it.
+// With an odometry 2 % too long, the estimate follows it.
 TEST(Tracker, FollowsOdometryAlongACorridor) {
   std::mt19937 random(17);
   Tracker tracker;

@@ -24,7 +24,8 @@ Eigen::Array2d cells_needed(const Eigen::AlignedBox2d& box, double resolution) {
 
 /// How many cells to add on a side that must move by `missing` cells (not at all if that is not positive).
 double cells_to_add(double missing, int size) {
-  return missing > 0.0 ? std::ceil(missing) + 1.0 + size / 8 : 0.0;
+  const int reserve = size / 8;  // so that a grid that grows bit by bit is copied seldom
+  return missing > 0.0 ? std::ceil(missing) + 1.0 + reserve : 0.0;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr double kLongest = 1.0;        // [s]
 constexpr double kShortest = 1e-3;      // [s]
 constexpr std::size_t kIntervals = 15;  // of which the mean is the usual one
 constexpr std::size_t kLeastIntervals = 5;
-constexpr double kBurst = 0.7;          // of the usual interval; shorter ones are no intervals
+constexpr double kBurst = 0.7;  // of the usual interval; shorter ones are no intervals
 
 // Odometry that says exactly nothing while the robot was faster is frozen, or the robot stopped dead.
 constexpr double kMoving = 0.15;  // [m/s]

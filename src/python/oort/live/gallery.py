@@ -12,7 +12,7 @@ from oort.errors import StateError
 from oort.live.listener import Listener
 from oort.live.snapshot import Drawing, Snapshot
 
-MAP_TIMEOUT = 10.0  # [s] that latest() waits (O-33)
+MAP_TIMEOUT = 10.0  # [s] that latest() waits
 _INTERVAL = 1.0  # [s] between drawings while mapping
 _SHARE = 0.1  # of the time, at most, that drawing may take as the map grows
 _LOOK = 0.2  # [s] between looks at what became of a drawing

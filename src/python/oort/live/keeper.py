@@ -12,7 +12,7 @@ from oort.live.paths import make_room, set_aside
 from oort.live.saver import Saver
 from oort.session import Session, State
 
-AUTOSAVE_INTERVAL = 15.0  # [s] (O-38)
+AUTOSAVE_INTERVAL = 15.0  # [s]
 
 
 class Keeper:
@@ -60,7 +60,7 @@ class Keeper:
     # ---- saving ----
 
     def tick(self, session: Session) -> None:
-        """Saves if it is time to; what failed is tried again then. While paused all rests (C-26)."""
+        """Saves if it is time to; what failed is tried again then. While paused all rests."""
         if not self._unsaved or session.state is State.PAUSED or not self.saver.idle or not _can_be_saved(session):
             return
         now = self._clock()
