@@ -45,6 +45,7 @@ TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, cons
                                    const std::vector<Motion>& alternatives) {
   const auto of = [](const Motion& m) { return frsm::Motion{to_frsm(m.T_before_after), m.covariance}; };
   std::vector<frsm::Motion> others;
+  others.reserve(alternatives.size());
   for (const Motion& alternative : alternatives) others.push_back(of(alternative));
   const long restarts = tracker_.restarts();
   const frsm::Match match = tracker_.track(points, time, of(motion), others);

@@ -88,6 +88,7 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
   const Eigen::Matrix3d doubt = alternatives.empty() ? Eigen::Matrix3d::Zero() : doubted_motion();
   const auto motion = [&](const Pose2& T) { return Motion{T, prior_covariance(T) + doubt}; };
   std::vector<Motion> others;
+  others.reserve(alternatives.size());
   for (const Pose2& alternative : alternatives) others.push_back(motion(alternative));
   TrackedScan tracked = tracker_->track(points, time, motion(T_previous_sensor), others);
   tracked.extent = extent_of(points);

@@ -14,7 +14,7 @@ void ClosureLog::set_capacity(std::size_t capacity) {
 
 void ClosureLog::add(ClosureAttempt attempt) {
   if (capacity_ == 0) return;
-  attempts_.push_back(std::move(attempt));
+  attempts_.push_back(attempt);
   trim();
 }
 

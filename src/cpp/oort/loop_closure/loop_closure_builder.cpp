@@ -216,7 +216,8 @@ std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pa
   const auto covered = [&](std::uint64_t node, std::uint64_t by) {
     return chains.same_segment(node, by) && id_distance(node, by) <= hops;
   };
-  for (const auto& [distance, node] : by_distance) {
+  for (const auto& entry : by_distance) {
+    const std::uint64_t node = entry.second;
     if (chosen.size() == static_cast<std::size_t>(search.knearest_neighbors)) break;
     if (is_recent(chains, node, query, id_threshold) || covered(node, query)) continue;
     if (std::none_of(chosen.begin(), chosen.end(), [&](std::uint64_t other) { return covered(node, other); })) {

@@ -136,7 +136,7 @@ OptimizerSummary GlobalSlam::solve(int max_iterations, std::uint64_t first_free_
   OptimizerOptions options = optimizer_options(parameters_, max_iterations);
   options.first_free_node = first_free_node;
   options.meter = meter;
-  const OptimizerSummary summary = optimize(map_.edit().graph, options);
+  OptimizerSummary summary = optimize(map_.edit().graph, options);
   ++counts_.solves;
   if (!summary.converged) ++counts_.solves_cut_short;
   return summary;

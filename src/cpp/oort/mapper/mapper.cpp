@@ -92,7 +92,7 @@ void Mapper::finish() {
   take_effect({lane_->slam().finish()});
 }
 
-void Mapper::set_map(Map map) {
+void Mapper::set_map(const Map& map) {
   const std::optional<std::string> defect = find_defect(map);
   if (defect) throw InputError("this map cannot be used: " + *defect);
   lane_->settle();

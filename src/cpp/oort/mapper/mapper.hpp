@@ -74,7 +74,7 @@ class Mapper {
   const Map& map() const { return map_.map(); }
   /// Replaces everything by a map from elsewhere. Mapping goes on after begin_session(). Throws InputError, with
   /// nothing changed, if the map contradicts itself.
-  void set_map(Map map);
+  void set_map(const Map& map);
 
   /// Whether the sensor's pose in the map is known.
   bool has_pose() const { return local_.has_pose(); }
