@@ -83,12 +83,12 @@ def test_unknown_attributes_are_refused() -> None:
 
 def test_copies_are_apart() -> None:
     config = Config(linear_update=0.3)
-    for other in (config.copy(), Config.of(config)):
+    for other in (config.copy(), Config.of(config), copy.copy(config), copy.deepcopy(config)):
         other.linear_update = 0.4
         assert isinstance(other, Config)
         assert config.linear_update == 0.3
     with pytest.raises(TypeError):
-        copy.copy(hash(config))
+        hash(config)
 
 
 def test_a_file_becomes_a_config(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from helpers.scenes import room_scan
 from oort import InputError, MapFileError, Parameters, Session, StateError, load_map
+from oort.naming import service
 from oort.recording import Scan
 
 
@@ -24,6 +25,19 @@ def session() -> Session:
 
 def state_of(session: Session) -> str:
     return session.state.value
+
+
+def test_who_calls_by_services_hears_of_services() -> None:
+    session = Session(Parameters(), naming=service)
+    with pytest.raises(StateError, match=r"^map/resume: no map is loaded; call map/load first"):
+        session.call("map/resume", ["", [0.0, 0.0, 0.0]])
+    with pytest.raises(StateError, match=r"^map/pause: nothing is being mapped; call map/start first"):
+        session.call("map/pause")
+    with pytest.raises(StateError, match="graph_loc/list shows"):
+        session.locations.locate("a", "b")
+    session.start()
+    with pytest.raises(StateError, match=r"^map/notify_docked: no scan has been mapped"):
+        session.call("map/notify_docked")
 
 
 def test_states(session: Session, tmp_path: Path) -> None:

@@ -74,6 +74,14 @@ class Config(Parameters):
         """Another Config with the same values."""
         return Config.of(self)
 
+    def __copy__(self) -> "Config":
+        """As copy()."""
+        return self.copy()
+
+    def __deepcopy__(self, memo: object) -> "Config":
+        """As copy()."""
+        return self.copy()
+
     def update(self, values: Mapping[str, Any]) -> None:
         """Sets several values, then checks all against each other; a section is a mapping. Raises ParameterError."""
         for name, value in values.items():

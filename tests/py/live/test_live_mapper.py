@@ -49,8 +49,16 @@ def test_the_map_is_that_of_the_same_scans_one_by_one() -> None:
 
 def test_scans_and_odometry_come_from_threads_of_their_own() -> None:
     with oort.LiveMapper() as live:
-        scans = threading.Thread(target=lambda: [live.push_scan(room_scan(0, 0, 0, 0.1 * k)) for k in range(50)])
-        odometry = threading.Thread(target=lambda: [live.push_odometry(0.05 * k, (0, 0, 0)) for k in range(100)])
+
+        def push_scans() -> None:
+            for k in range(50):
+                live.push_scan(room_scan(0.0, 0.0, 0.0, 0.1 * k))
+
+        def push_odometry() -> None:
+            for k in range(100):
+                live.push_odometry(0.05 * k, (0.0, 0.0, 0.0))
+
+        scans, odometry = threading.Thread(target=push_scans), threading.Thread(target=push_odometry)
         scans.start()
         odometry.start()
         while scans.is_alive() or odometry.is_alive():
