@@ -3,12 +3,14 @@
 // 01: maps a CARMEN log, saves the map and renders it.
 #include <cstdio>
 #include <oort/oort.hpp>
+#include <string>
 
 #include "carmen_log.hpp"
+#include "example_main.hpp"
 
 namespace {
 
-void map_a_log(const char* log_path, const char* map_path) {
+void map_a_log(const std::string& log_path, const std::string& map_path) {
   const CarmenLog log = read_carmen_log(log_path);
   oort::Parameters parameters;  // the defaults; oort::read_parameters(path) reads a file
   parameters.linear_update = 0.3;
@@ -30,10 +32,5 @@ void map_a_log(const char* log_path, const char* map_path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::fprintf(stderr, "usage: 01_map_a_log LOG MAP\n"), 2;
-  try {
-    map_a_log(argv[1], argv[2]);
-  } catch (const oort::Error& error) {
-    return std::fprintf(stderr, "%s\n", error.what()), 1;
-  }
+  return example_main(argc, argv, map_a_log);
 }

@@ -5,12 +5,15 @@
 #include <condition_variable>
 #include <cstdio>
 #include <deque>
+#include <future>
 #include <mutex>
 #include <oort/oort.hpp>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "carmen_log.hpp"
+#include "example_main.hpp"
 
 namespace {
 
@@ -86,15 +89,16 @@ void drive(const CarmenLog& log, LiveMapper& live) {
   live.stop();
 }
 
-void live_loop(const char* log_path, const char* map_path) {
+void live_loop(const std::string& log_path, const std::string& map_path) {
   const CarmenLog log = read_carmen_log(log_path);
   LiveMapper live(log.T_base_sensor);
-  std::thread robot([&] { drive(log, live); });
-  std::thread mapping([&] { live.run(); });
-  robot.join();  // a planner would ask for live.pose() meanwhile
-  mapping.join();
-  const oort::Pose2 pose = live.pose().value();
-  std::printf("at the end the base is at %.2f %.2f\n", pose.x, pose.y);
+  auto mapping = std::async(std::launch::async, [&] { live.run(); });
+  auto robot = std::async(std::launch::async, [&] { drive(log, live); });
+  robot.get();  // a planner would ask for live.pose() meanwhile
+  mapping.get();
+  const std::optional<oort::Pose2> pose = live.pose();
+  if (!pose) throw oort::InputError(log_path + ": no scan could be mapped");
+  std::printf("at the end the base is at %.2f %.2f\n", pose->x, pose->y);
   oort::save_map(map_path, live.map());
   std::printf("%zu nodes\n", live.map().graph.nodes.size());
 }
@@ -102,10 +106,5 @@ void live_loop(const char* log_path, const char* map_path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::fprintf(stderr, "usage: 02_live_loop LOG MAP\n"), 2;
-  try {
-    live_loop(argv[1], argv[2]);
-  } catch (const oort::Error& error) {
-    return std::fprintf(stderr, "%s\n", error.what()), 1;
-  }
+  return example_main(argc, argv, live_loop);
 }

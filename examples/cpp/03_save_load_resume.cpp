@@ -3,12 +3,14 @@
 // 03: maps half of a log, saves the map, loads it and goes on with the other half in a new session.
 #include <cstdio>
 #include <oort/oort.hpp>
+#include <string>
 
 #include "carmen_log.hpp"
+#include "example_main.hpp"
 
 namespace {
 
-void save_load_resume(const char* log_path, const std::string& map_path) {
+void save_load_resume(const std::string& log_path, const std::string& map_path) {
   const CarmenLog log = read_carmen_log(log_path);
   const std::size_t half = log.scans.size() / 2;
   const oort::Parameters parameters;
@@ -33,10 +35,5 @@ void save_load_resume(const char* log_path, const std::string& map_path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::fprintf(stderr, "usage: 03_save_load_resume LOG MAP\n"), 2;
-  try {
-    save_load_resume(argv[1], argv[2]);
-  } catch (const oort::Error& error) {
-    return std::fprintf(stderr, "%s\n", error.what()), 1;
-  }
+  return example_main(argc, argv, save_load_resume);
 }

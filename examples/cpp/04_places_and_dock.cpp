@@ -3,8 +3,10 @@
 // 04: names places while mapping, takes the dock as an anchor, and shows that places move with the map.
 #include <cstdio>
 #include <oort/oort.hpp>
+#include <string>
 
 #include "carmen_log.hpp"
+#include "example_main.hpp"
 
 namespace {
 
@@ -12,7 +14,7 @@ void print_place(const char* when, const oort::Pose2& pose) {
   std::printf("%s the place is at %.3f %.3f\n", when, pose.x, pose.y);
 }
 
-void places_and_dock(const char* log_path, const char* map_path) {
+void places_and_dock(const std::string& log_path, const std::string& map_path) {
   const CarmenLog log = read_carmen_log(log_path);
   oort::Mapper mapper(oort::Parameters{}, log.T_base_sensor);
   for (std::size_t k = 0; k < log.scans.size(); ++k) {
@@ -35,10 +37,5 @@ void places_and_dock(const char* log_path, const char* map_path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::fprintf(stderr, "usage: 04_places_and_dock LOG MAP\n"), 2;
-  try {
-    places_and_dock(argv[1], argv[2]);
-  } catch (const oort::Error& error) {
-    return std::fprintf(stderr, "%s\n", error.what()), 1;
-  }
+  return example_main(argc, argv, places_and_dock);
 }

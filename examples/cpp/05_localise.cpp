@@ -8,10 +8,11 @@
 #include <string>
 
 #include "carmen_log.hpp"
+#include "example_main.hpp"
 
 namespace {
 
-void localise(const char* log_path, const char* map_path) {
+void localise(const std::string& log_path, const std::string& map_path) {
   const CarmenLog log = read_carmen_log(log_path);
   const oort::Map map = oort::load_map(map_path);
   const oort::Parameters parameters;
@@ -34,10 +35,5 @@ void localise(const char* log_path, const char* map_path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::fprintf(stderr, "usage: 05_localise LOG MAP\n"), 2;
-  try {
-    localise(argv[1], argv[2]);
-  } catch (const oort::Error& error) {
-    return std::fprintf(stderr, "%s\n", error.what()), 1;
-  }
+  return example_main(argc, argv, localise);
 }

@@ -27,7 +27,8 @@ def live_loop(log_path: str, map_path: str) -> None:
         robot.join()  # a planner would ask for live.pose() meanwhile
         live.save()  # the map with all that was pushed
         pose = live.pose()
-    assert pose is not None
+    if pose is None:
+        raise oort.InputError(f"{log_path}: no scan could be mapped")
     print(f"at the end the base is at {pose[0]:.2f} {pose[1]:.2f}")
     print(f"{len(live.map())} nodes")
 
