@@ -43,7 +43,7 @@ class Localizer(_core.Localizer):
     """Follows a robot on a map that does not change; without a start it searches the whole map. Not thread-safe."""
 
     def __init__(
-        self, map_: Map | ReferenceMap, config: Parameters | None = None, sensor_on_base: Pose = (0.0, 0.0, 0.0)
+        self, map_: Map | ReferenceMap, config: Parameters | None = None, sensor_on_base: ArrayLike = (0.0, 0.0, 0.0)
     ) -> None:
         """Starts searching. ``config`` are the parameters, the defaults if not given; ``sensor_on_base`` T_base_sensor.
 

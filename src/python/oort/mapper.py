@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from oort import _core
 from oort._core import Parameters, ScanResult
 from oort.poses import as_pose
-from oort.recording.types import LaserScan, Pose
+from oort.recording.types import LaserScan
 
 __all__ = ["Mapper"]
 
@@ -19,7 +19,7 @@ class Mapper(_core.Mapper):
     a. Nodes are sensor poses, and the first of a new map is its origin.
     """
 
-    def __init__(self, config: Parameters | None = None, sensor_on_base: Pose = (0.0, 0.0, 0.0)) -> None:
+    def __init__(self, config: Parameters | None = None, sensor_on_base: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         """An empty map; ``config`` are the parameters, the defaults if not given, ``sensor_on_base`` T_base_sensor.
 
         Raises ParameterError if the parameters contradict each other, InputError if the pose is not finite.

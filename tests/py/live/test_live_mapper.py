@@ -10,6 +10,8 @@ import pytest
 
 import oort
 from helpers.scenes import room_scan
+from oort._core import OdometryBuffer
+from oort.simulate import Drive
 
 
 def push(live: oort.LiveMapper, scans: int = 60, first: int = 0) -> None:
@@ -44,6 +46,30 @@ def test_the_map_is_that_of_the_same_scans_one_by_one() -> None:
             scan = room_scan(0.01 * k, 0.0, 0.02 * k, 0.1 * k)
             live.push_odometry(scan.time, scan.odometry)
             live.push_scan(scan)
+    assert np.array_equal(live.map().node_poses, mapper.map().node_poses)
+
+
+def test_a_drive_is_mapped_with_the_odometry_at_each_stamp(drive: Drive) -> None:
+    """Odometry at its own rate, in the order of the stamps, against a mapper that is given what lies between."""
+    limits = drive.angle_min, drive.angle_increment, drive.range_min, drive.range_max
+    scans = [oort.LaserScan(drive.ranges[k], *limits, t) for k, t in enumerate(drive.scan_times.tolist())]
+    poses = list(zip(drive.odometry_times.tolist(), drive.T_odom_base, strict=True))
+    mount = drive.T_base_sensor
+    buffer, mapper = OdometryBuffer(), oort.Mapper(sensor_on_base=mount)
+    for time, pose in poses:
+        buffer.add(time, *pose)
+    for scan in scans:
+        odometry = buffer.lookup(scan.time)
+        assert odometry is not None
+        mapper.add_scan(scan, odometry)
+    mapper.finish()
+    with oort.LiveMapper(sensor_on_base=mount) as live:
+        for scan in scans:
+            while poses and poses[0][0] <= scan.time:
+                live.push_odometry(*poses.pop(0))
+            live.push_scan(scan)
+        for time, pose in poses:
+            live.push_odometry(time, pose)
     assert np.array_equal(live.map().node_poses, mapper.map().node_poses)
 
 
