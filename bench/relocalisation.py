@@ -200,7 +200,7 @@ def follow(homes: Homes, row: str, seed: int) -> dict[str, Any]:
 
 
 def _add(localizer: Localizer, scan: Scan) -> None:
-    localizer.add_scan(*scan.arguments)
+    localizer.add_scan(scan, scan.odometry)
 
 
 def _follow_figures(

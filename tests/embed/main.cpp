@@ -5,10 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
-#include <oort/geometry/errors.hpp>
-#include <oort/mapper/mapper.hpp>
-#include <oort/render/render.hpp>
-#include <oort/storage/map_file.hpp>
+#include <oort/oort.hpp>
 #include <string>
 
 namespace {
@@ -47,7 +44,7 @@ int main(int argc, char** argv) {
     mapper.finish();
     oort::save_map(argv[1], mapper.map());
     const oort::Map loaded = oort::load_map(argv[1]);
-    const oort::OccupancyGrid grid = oort::render(loaded.graph.nodes, loaded.clouds, oort::Parameters{}.output_map).map;
+    const oort::OccupancyGrid grid = oort::render(loaded).map;
     std::cout << loaded.graph.nodes.size() << " nodes, " << grid.width << " x " << grid.height << " cells, "
               << loaded.locations.size() << " location\n";
   } catch (const oort::Error& error) {

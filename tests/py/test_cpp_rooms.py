@@ -48,6 +48,21 @@ def test_includes_follow_the_order(path: Path) -> None:
     assert [room for room in included if ORDER.index(room) > here] == []
 
 
+HEADERS = sorted(path for path in ENGINE.rglob("*.hpp") if "internal" not in path.parts)
+
+
+@pytest.mark.parametrize("path", HEADERS, ids=lambda path: str(path.relative_to(ENGINE)))
+def test_what_is_installed_includes_nothing_internal(path: Path) -> None:
+    assert re.findall(r'#include [<"].*internal/.*', path.read_text()) == []
+
+
+def test_internal_headers_stay_in_their_room() -> None:
+    """But for the graph's, which refinement shares."""
+    for path in FILES:
+        for room in re.findall(r'#include "oort/(\w+)/internal/', path.read_text()):
+            assert room in (_room(path), "graph"), path
+
+
 def test_no_room_is_too_large() -> None:
     lines = {room: 0 for room in ORDER}
     for path in FILES:

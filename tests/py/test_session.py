@@ -9,6 +9,7 @@ import pytest
 
 from helpers.scenes import room_scan
 from oort import InputError, MapFileError, Parameters, Session, StateError, load_map
+from oort.naming import service
 from oort.recording import Scan
 
 
@@ -26,6 +27,19 @@ def state_of(session: Session) -> str:
     return session.state.value
 
 
+def test_who_calls_by_services_hears_of_services() -> None:
+    session = Session(Parameters(), naming=service)
+    with pytest.raises(StateError, match=r"^map/resume: no map is loaded; call map/load first"):
+        session.call("map/resume", ["", [0.0, 0.0, 0.0]])
+    with pytest.raises(StateError, match=r"^map/pause: nothing is being mapped; call map/start first"):
+        session.call("map/pause")
+    with pytest.raises(StateError, match="graph_loc/list shows"):
+        session.locations.locate("a", "b")
+    session.start()
+    with pytest.raises(StateError, match=r"^map/notify_docked: no scan has been mapped"):
+        session.call("map/notify_docked")
+
+
 def test_states(session: Session, tmp_path: Path) -> None:
     assert state_of(session) == "not_mapping"
     assert session.add_scan(room_scan(0, 0, 0, 0.0)) is None
@@ -40,7 +54,7 @@ def test_states(session: Session, tmp_path: Path) -> None:
     session.stop()
     assert state_of(session) == "not_mapping"
     assert load_map(str(tmp_path / "other")).node_poses.shape == session.map.node_poses.shape
-    with pytest.raises(StateError, match="map/clear"):
+    with pytest.raises(StateError, match=r"Session\.start: .*Session\.clear"):
         session.start("")
     session.clear()
     assert session.mapper.num_nodes == 0
@@ -93,7 +107,7 @@ def test_locations_by_namespace_and_prefix(session: Session) -> None:
         ("place/room", "b"),
     ]
     assert session.locations.list_ids("", use_as_prefix=True) == [("dock", "a"), ("dock", "b")]
-    with pytest.raises(StateError, match="graph_loc/list"):
+    with pytest.raises(StateError, match=r"Session\.locations\.list_ids"):
         session.locations.locate("place", "a")
 
 
@@ -137,7 +151,7 @@ def test_resume_adds_a_chain_and_corrects_the_start_pose(session: Session, tmp_p
     old = load_map(str(tmp_path / "old"))
 
     again = Session(Parameters())
-    with pytest.raises(StateError, match="map/load"):
+    with pytest.raises(StateError, match=r"Session\.resume: .*Session\.load"):
         again.resume(str(tmp_path / "new"), (0, 0, 0))
     again.load(str(tmp_path / "old"))
     again.resume(str(tmp_path / "new"), (0.15, -0.1, 0.1))  # the truth is 0, 0, 0
@@ -176,10 +190,10 @@ def test_useless_scans_are_survived(session: Session) -> None:
     drive_around(session)
     nothing = np.full(180, np.nan, np.float32)
     for i, ranges in enumerate([nothing, nothing[:0], np.full(7, np.inf, np.float32)]):
-        result = session.add_scan(Scan(20.0 + i, "20", -1.5, 0.1, 0.05, 6.0, ranges, (0.6, 0.0, 1.2)))
+        result = session.add_scan(Scan(ranges, -1.5, 0.1, 0.05, 6.0, 20.0 + i, stamp="20", odometry=(0.6, 0.0, 1.2)))
         assert result is not None and result.outcome == "skipped"
     with pytest.raises(InputError):
-        session.add_scan(Scan(30.0, "30", -1.5, 0.1, 0.05, 6.0, nothing, (np.nan, 0.0, 0.0)))
+        session.add_scan(Scan(nothing, -1.5, 0.1, 0.05, 6.0, 30.0, stamp="30", odometry=(np.nan, 0.0, 0.0)))
     drive_around(session, start=40.0)
     assert session.mapper.sensor_pose == pytest.approx((0.59, 0.0, 1.18), abs=0.02)
 

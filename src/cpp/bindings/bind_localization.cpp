@@ -115,7 +115,7 @@ void bind_localizer(py::module_& m) {
           "Says about where the sensor is at the next scan; the covariance is along the axes of the map.")
       .def("start_searching", &Localizer::start_searching, "Forgets the pose.")
       .def(
-          "add_scan",
+          "add_ranges",
           [](Localizer& l, double time, double angle_min, double angle_increment, double range_min, double range_max,
              const Ranges& ranges, const PoseTuple& odometry, const SweepTuple& sweep) {
             const LaserScan scan{
@@ -126,7 +126,7 @@ void bind_localizer(py::module_& m) {
           },
           py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
           py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
-          "Takes the next scan as Mapper.add_scan does. Raises InputError; nothing changes then.")
+          "Takes the next scan as Mapper.add_ranges does. Raises InputError; nothing changes then.")
       .def_property_readonly(
           "state", [](const Localizer& l) { return std::string(to_string(l.state())); },
           "\"searching\", \"tracking\", \"uncertain\" or \"lost\".")

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "oort/map/locations.hpp"
 #include "oort/map/map.hpp"
 #include "oort/render/crop.hpp"
 #include "oort/render/render.hpp"
@@ -123,6 +124,31 @@ py::array_t<double> cloud_points(const Map& map, std::size_t k) {
   return result;
 }
 
+py::list clouds(const Map& map) {
+  py::list result;
+  for (std::size_t k = 0; k < map.clouds.size(); ++k) result.append(cloud_points(map, k));
+  return result;
+}
+
+RenderedMap rendered(const Map& map, const Parameters& parameters) {
+  const py::gil_scoped_release release;
+  return render(map, parameters);
+}
+
+/// What lies in a box of x_min, y_min, x_max, y_max alone.
+RenderedMap rendered_within(const Map& map, const Parameters& parameters, const std::array<double, 4>& within) {
+  const py::gil_scoped_release release;
+  const auto& [x_min, y_min, x_max, y_max] = within;
+  const Eigen::AlignedBox2d box(Eigen::Vector2d(x_min, y_min), Eigen::Vector2d(x_max, y_max));
+  const Cropped cropped = crop(map.graph.nodes, map.clouds, box);
+  return render(cropped.nodes, cropped.clouds, parameters.output_map);
+}
+
+std::optional<PoseTuple> located(const Map& map, const std::string& name_space, const std::string& id) {
+  const std::optional<Pose2> pose = locate(map, name_space, id);
+  return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
+}
+
 py::list get_locations(const Map& map) {
   py::list result;
   for (const Location& location : map.locations) {
@@ -169,6 +195,7 @@ void bind_map_class(py::module_& m) {
            "(M, 3) beams of node k in the sensor's frame, in scan order: x, y, 1 for a return; z is nan otherwise, and "
            "x "
            "nan or inf with y the bearing [rad] where the range was. Raises IndexError.")
+      .def_property_readonly("clouds", &clouds, "All of them, in the order of the nodes: a list of arrays as cloud().")
       .def_property_readonly(
           "cloud_times", [](const Map& map) { return column<double>(map.clouds, [](auto& c) { return c.time; }); },
           "(N,) stamp of each cloud [s].")
@@ -181,7 +208,14 @@ void bind_map_class(py::module_& m) {
       .def_property(
           "locations", &get_locations, &set_locations,
           "Named places: a list of (namespace, id, node_id, (x, y, theta)) with the pose in the node's frame. "
-          "Assign a list to replace them, but not while another thread saves this map.");
+          "Assign a list to replace them, but not while another thread saves this map.")
+      .def("locate", &located, py::arg("name_space"), py::arg("id"), "A place's pose in the map, or None.")
+      .def(
+          "save", [](const Map& map, const std::string& path) { save_map(path, map); }, py::arg("path"),
+          py::call_guard<py::gil_scoped_release>(),
+          "Writes the map's three files as one, as save_map does. Raises MapFileError.")
+      .def("render", &rendered, py::arg("parameters") = Parameters(),
+           "Draws the map to navigate by; of the parameters output_map counts. Raises ParameterError or InputError.");
 }
 
 void bind_storage(py::module_& m) {
@@ -225,7 +259,7 @@ void bind_storage(py::module_& m) {
       "MapFileError.");
 }
 
-void bind_rendering(py::module_& m) {
+void bind_grids(py::module_& m) {
   py::class_<OccupancyGrid>(m, "OccupancyGrid", "A map to navigate by: the fields of nav_msgs/OccupancyGrid.")
       .def_readonly("resolution", &OccupancyGrid::resolution, "Side of a cell [m].")
       .def_property_readonly(
@@ -239,22 +273,17 @@ void bind_rendering(py::module_& m) {
             return py::array_t<std::int8_t>({grid.height, grid.width}, grid.cells.data());
           },
           "(height, width) int8, a copy: 0 free, 100 occupied, -1 unknown; row 0 has the least y.");
+  py::class_<RenderedMap>(m, "RenderedMap", "A map drawn.")
+      .def_readonly("map", &RenderedMap::map, "As the scans say, with the robot's way cleared.")
+      .def_readonly("map_cleaned", &RenderedMap::map_cleaned, "The same without speckle noise, for path planning.");
+}
+
+void bind_rendering(py::module_& m) {
   m.def(
       "render_map",
       [](const Map& map, const Parameters& parameters, const std::optional<std::array<double, 4>>& within) {
-        RenderedMap rendered;
-        {
-          const py::gil_scoped_release release;
-          if (within) {
-            const auto& [x_min, y_min, x_max, y_max] = *within;
-            const Eigen::AlignedBox2d box(Eigen::Vector2d(x_min, y_min), Eigen::Vector2d(x_max, y_max));
-            const Cropped cropped = crop(map.graph.nodes, map.clouds, box);
-            rendered = render(cropped.nodes, cropped.clouds, parameters.output_map);
-          } else {
-            rendered = render(map.graph.nodes, map.clouds, parameters.output_map);
-          }
-        }
-        return std::make_pair(std::move(rendered.map), std::move(rendered.map_cleaned));
+        RenderedMap result = within ? rendered_within(map, parameters, *within) : rendered(map, parameters);
+        return std::make_pair(std::move(result.map), std::move(result.map_cleaned));
       },
       py::arg("map"), py::arg("parameters"), py::arg("within") = py::none(),
       "Draws a map: (map, map_cleaned), the second without speckle noise. Of the parameters "
@@ -270,6 +299,7 @@ py::str to_str(const std::string& text) {
 }
 
 void bind_map(py::module_& m) {
+  bind_grids(m);
   bind_map_class(m);
   bind_storage(m);
   bind_rendering(m);

@@ -197,7 +197,7 @@ void bind_mapping(py::module_& m) {
           "mount_sensor", [](Mapper& mapper, const PoseTuple& pose) { mapper.mount_sensor(pose_of(pose)); },
           py::arg("sensor_on_base"), "Says where the sensor sits on the base, before the first scan.")
       .def(
-          "add_scan",
+          "add_ranges",
           [](Mapper& mapper, double time, double angle_min, double angle_increment, double range_min, double range_max,
              const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
              const SweepTuple& sweep) {

@@ -49,7 +49,7 @@ void bind_merging(py::module_& m) {
         const py::gil_scoped_release release;
         return merge_maps(a, b, parameters, T_a_b ? std::make_optional(pose_of(*T_a_b)) : std::nullopt);
       },
-      py::arg("a"), py::arg("b"), py::arg("parameters"), py::arg("T_a_b") = py::none(),
+      py::arg("a"), py::arg("b"), py::arg("parameters") = Parameters(), py::arg("T_a_b") = py::none(),
       "Joins two maps of the same home into one in the frame of the first. T_a_b is about where the second one's "
       "origin lies on the first; found if not given. Raises InputError and ParameterError.");
 }

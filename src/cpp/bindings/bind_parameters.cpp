@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "oort/parameters/parameter_file.hpp"
 #include "oort/parameters/table.hpp"
 
 namespace py = pybind11;
@@ -58,6 +59,8 @@ void bind_entry(py::module_& m) {
 void bind_parameters(py::module_& m) {
   bind_entry(m);
   m.def("parameter_table", &parameter_table, "Every parameter once, in the order of params.json.");
+  m.def("unknown_parameter", &unknown_parameter, py::arg("path"),
+        "The message for a path that is in no table, with the nearest path or section that is.");
   py::class_<Parameters>(m, "Parameters", "The parameters of the engine, by their paths in params.json.")
       .def(py::init<>(), "Every value at its default.")
       .def("get", &get_parameter, py::arg("path"), "The value at a path. Raises ParameterError if it is unknown.")
@@ -67,6 +70,15 @@ void bind_parameters(py::module_& m) {
       .def("check", &check_parameters, "Checks values against each other. Raises ParameterError.")
       .def("copy", [](const Parameters& self) { return Parameters(self); })
       .def("to_dict", &to_dict, "Every path and its value, in the order of params.json.");
+  m.def(
+      "read_parameters",
+      [](const std::string& path) {
+        std::vector<std::string> warnings;
+        Parameters parameters = read_parameters(path, &warnings);
+        return std::make_pair(std::move(parameters), std::move(warnings));
+      },
+      py::arg("path"),
+      "The parameters of a file, and a sentence on each key that it gives twice. Raises ParameterError.");
 }
 
 }  // namespace oort

@@ -2,14 +2,35 @@
 # SPDX-License-Identifier: Apache-2.0
 """Oort: 2D laser SLAM for home robots with short-range, coarse depth sensors."""
 
-from oort._core import Map, Mapper, OccupancyGrid, Parameters, ScanResult, load_map, render_map, save_map
+from oort._core import (
+    Map,
+    OccupancyGrid,
+    Parameters,
+    RenderedMap,
+    ScanResult,
+    load_map,
+    merge_maps,
+    render_map,
+    save_map,
+)
 from oort._core import __version__ as __version__
+from oort.config import Config
 from oort.errors import InputError, MapFileError, OortError, ParameterError, StateError
+from oort.export.notebook import map_html, map_png
+from oort.live import LiveMapper
+from oort.localization import Localizer
+from oort.mapper import Mapper
+from oort.offline.replay import replay
 from oort.parameters import read_parameters
+from oort.recording import LaserScan, open_recording
 from oort.session import Session, State
 
 __all__ = [
+    "Config",
     "InputError",
+    "LaserScan",
+    "LiveMapper",
+    "Localizer",
     "Map",
     "MapFileError",
     "Mapper",
@@ -17,12 +38,20 @@ __all__ = [
     "OortError",
     "ParameterError",
     "Parameters",
+    "RenderedMap",
     "ScanResult",
     "Session",
     "State",
     "StateError",
     "load_map",
+    "merge_maps",
+    "open_recording",
     "read_parameters",
     "render_map",
+    "replay",
     "save_map",
 ]
+
+# Notebooks ask an object for these. The engine makes maps, but pictures are drawn in Python.
+setattr(Map, "_repr_html_", map_html)  # noqa: B010 (the stub does not know them)
+setattr(Map, "_repr_png_", map_png)  # noqa: B010

@@ -5,13 +5,12 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from oort import _core
 from oort._core import (
     Hypothesis,
-    Localizer,
     Map,
-    Mapper,
     Parameters,
     PlacedScan,
     ReferenceMap,
@@ -19,8 +18,8 @@ from oort._core import (
     Relocalizer,
 )
 from oort.errors import InputError
-from oort.poses import between, compose
-from oort.recording import Pose, Recording, Scan
+from oort.poses import as_pose, between, compose
+from oort.recording import LaserScan, Pose, Recording, Scan
 from oort.recording.motion import Placement
 
 __all__ = [
@@ -38,6 +37,36 @@ __all__ = [
 
 STARTS = ("global", "dock", "last", "pose")
 """How a localiser may begin: by a search of the whole map, at the dock, where mapping ended, or at a given pose."""
+
+
+class Localizer(_core.Localizer):
+    """Follows a robot on a map that does not change; without a start it searches the whole map. Not thread-safe."""
+
+    def __init__(
+        self, map_: Map | ReferenceMap, config: Parameters | None = None, sensor_on_base: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> None:
+        """Starts searching. ``config`` are the parameters, the defaults if not given; ``sensor_on_base`` T_base_sensor.
+
+        Raises InputError if the map is empty or contradicts itself.
+        """
+        parameters = Parameters() if config is None else config
+        reference = map_ if isinstance(map_, ReferenceMap) else ReferenceMap(map_, parameters)
+        mount = as_pose(sensor_on_base, "Localizer: sensor_on_base")
+        super().__init__(reference, parameters, mount)
+        self._sensor_to_base = between(mount, (0.0, 0.0, 0.0))  # T_sensor_base
+
+    def add_scan(self, scan: LaserScan, odometry: ArrayLike) -> str:
+        """Takes the next scan with ``odometry``, T_odom_base at its stamp; the state, see `state`.
+
+        Raises InputError if the scan's limits or the pose are not finite; nothing changes then.
+        """
+        self.add_ranges(*scan.readings, as_pose(odometry, "Localizer.add_scan: odometry"), scan.sweep)
+        return self.state
+
+    @property
+    def T_map_base(self) -> Pose | None:  # noqa: N802
+        """The base's pose at the latest scan; None while searching."""
+        return None if self.T_map_sensor is None else _pose(compose(self.T_map_sensor, self._sensor_to_base))
 
 
 def find_pose(
@@ -61,7 +90,7 @@ def find_start(map_: Map, parameters: Parameters, recording: Recording) -> Pose:
     first: Scan | None = None
     for scan in recording.scans():
         first = first or scan
-        _add(localizer, scan)
+        localizer.add_scan(scan, scan.odometry)
         if localizer.T_map_odom is not None:
             return _pose(compose(compose(localizer.T_map_odom, first.odometry), recording.sensor_on_base))
     reasons = ", ".join(f"{why} {n}" for why, n in sorted(localizer.statistics["search_refusals"].items()))
@@ -76,10 +105,8 @@ def start_pose(map_: Map, parameters: Parameters, start: str) -> Pose:
         raise InputError("the map is empty: there is no place on it to start at")
     if start == "last":
         return _pose(map_.node_poses[-1])
-    mapper = Mapper(parameters)
-    mapper.set_map(map_)
-    docks = [id for name_space, id, *_ in mapper.locations if name_space == "dock"]
-    pose = mapper.locate("dock", docks[0]) if docks else None
+    docks = [id for name_space, id, *_ in map_.locations if name_space == "dock"]
+    pose = map_.locate("dock", docks[0]) if docks else None
     if pose is None:
         raise InputError("the map has no dock: create the place dock/dock while mapping, or start another way")
     return pose
@@ -88,10 +115,6 @@ def start_pose(map_: Map, parameters: Parameters, start: str) -> Pose:
 def start_covariance(position: float = 0.15, heading: float = 0.15) -> NDArray[np.float64]:
     """Covariance (3, 3) of a pose that is known to about so many metres and radians (standard deviations)."""
     return np.diag([position**2, position**2, heading**2])
-
-
-def _add(localizer: Localizer, scan: Scan) -> None:
-    localizer.add_scan(*scan.arguments)
 
 
 def _views(parameters: Parameters, scans: Sequence[Scan], sensor_on_base: Pose) -> list[PlacedScan]:
@@ -117,9 +140,8 @@ def _views(parameters: Parameters, scans: Sequence[Scan], sensor_on_base: Pose) 
 def _placed(scan: Scan, pose: Pose, mount: Pose | None) -> PlacedScan:
     """``mount`` is T_base_sensor, or None where the beams count as measured at once."""
     placement = Placement(scan.odometry, scan.sweep if mount else None)
-    time_, angle_min, angle_increment, range_min, range_max, ranges, *_ = scan.arguments
     sweep = placement.of_child(mount).sweep if mount else None
-    return PlacedScan(time_, angle_min, angle_increment, range_min, range_max, ranges, pose, sweep)
+    return PlacedScan(*scan.readings, pose, sweep)
 
 
 def _pose(pose: NDArray[np.float64]) -> Pose:

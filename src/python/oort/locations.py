@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from oort._core import Mapper
 from oort.errors import StateError
+from oort.naming import Naming, session_method
 
 Pose = tuple[float, float, float]
 """x [m], y [m], theta [rad]."""
@@ -29,8 +30,9 @@ class Locations:
     A place is known by its namespace and id; creating it again moves it. The namespace ``dock`` is for docks.
     """
 
-    def __init__(self, mapper: Mapper) -> None:
-        """Serves the places of ``mapper``."""
+    def __init__(self, mapper: Mapper, naming: Naming = session_method) -> None:
+        """Serves the places of ``mapper``; ``naming`` is how messages name the calls."""
+        self._naming = naming
         self._mapper = mapper
         self._waiting: list[_Request] = []
 
@@ -56,8 +58,8 @@ class Locations:
         """Records points (x, y) of the map frame, all relative to the node that is nearest to their centroid."""
         if not len(name_spaces) == len(points) == len(ids):
             raise StateError(
-                f"create_points: got {len(name_spaces)} namespaces, {len(points)} points and {len(ids)} ids; "
-                "give one namespace and one id per point"
+                f"{self._naming('graph_loc/create_points')}: got {len(name_spaces)} namespaces, {len(points)} points "
+                f"and {len(ids)} ids; give one namespace and one id per point"
             )
         if not all(ids):
             raise StateError(f"create_points: point {list(ids).index('')} has an empty id; give each point one")
@@ -106,7 +108,9 @@ class Locations:
             )
         pose = self._mapper.locate(name_space, id)
         if pose is None:
-            raise StateError(f"no location {name_space!r}/{id!r}; graph_loc/list shows the known ones")
+            raise StateError(
+                f"no location {name_space!r}/{id!r}; {self._naming('graph_loc/list')} shows the known ones"
+            )
         return pose
 
     def delete(self, name_space: str, id: str) -> bool:

@@ -5,7 +5,21 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from oort.errors import InputError
+
 Array = NDArray[np.float64]
+
+
+def as_pose(values: ArrayLike, what: str) -> tuple[float, float, float]:
+    """Three numbers x [m], y [m], theta [rad] from anything that holds them. InputError names ``what`` has none."""
+    try:
+        pose = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        pose = np.empty(0)
+    if pose.shape != (3,):
+        raise InputError(f"{what} must be three numbers x, y [m], theta [rad], not {values!r}")
+    x, y, theta = pose.tolist()
+    return x, y, theta
 
 
 def wrap_angle(angle: ArrayLike) -> Array:

@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from oort._core import Map, Mapper, Parameters, Saved, ScanResult, normalise_map_path, save_map, save_metadata
+from oort._core import Map, Parameters, Saved, ScanResult, normalise_map_path, save_map, save_metadata
 from oort.errors import StateError
 from oort.locations import Locations, Pose
+from oort.mapper import Mapper
+from oort.naming import METHODS, Naming, session_method
 from oort.recording import Scan
 from oort.saved_maps import open_map
 
@@ -54,13 +56,16 @@ class Session:
         *,
         save: Save = save,
         prepare: Prepare = lambda call, path: None,
+        naming: Naming = session_method,
         keep_attempts: int = 0,
     ) -> None:
         """Starts empty and not mapping; ``sensor_on_base`` is T_base_sensor.
 
-        ``save`` is how maps reach the disk; ``prepare`` makes a path of map/start or map/resume ready for that.
+        ``save`` is how maps reach the disk; ``prepare`` makes a path of start() or resume() ready for that. ``naming``
+        is how messages name the calls.
         ``keep_attempts``: of how many attempts to close loops the mapper tells, the latest.
         """
+        self._naming = naming
         self._keep_attempts = keep_attempts
         self._parameters = parameters
         self._sensor_on_base = sensor_on_base
@@ -69,20 +74,7 @@ class Session:
         self._state = State.NOT_MAPPING
         self._path = ""
         self._use(self._new_mapper())
-        self._calls: dict[str, Callable[..., Any]] = {
-            "map/start": self.start,
-            "map/load": self.load,
-            "map/resume": self.resume,
-            "map/notify_docked": self.notify_docked,
-            "map/pause": self.pause,
-            "map/resume_from_paused": self.resume_from_paused,
-            "map/stop": self.stop,
-            "map/clear": self.clear,
-            "graph_loc/create": self.create_location,
-            "graph_loc/create_points": self._create_points,
-            "graph_loc/delete": self._delete_location,
-            "graph_loc/clear": self._clear_locations,
-        }
+        self._calls: dict[str, Callable[..., Any]] = {call: getattr(self, name) for call, name in METHODS.items()}
 
     # ---- what is there ----
 
@@ -114,7 +106,7 @@ class Session:
     # ---- events ----
 
     def call(self, name: str, args: Sequence[Any] = ()) -> Any:
-        """Runs a service call by its name under the node, such as ``map/notify_docked``.
+        """Makes a call by its name in an events file, such as ``map/notify_docked``.
 
         Raises StateError for an unknown name, wrong arguments, or a call that the state does not allow.
         """
@@ -131,7 +123,7 @@ class Session:
         """Takes one scan with its odometry; None if the state is not mapping."""
         if self._state is not State.MAPPING:
             return None
-        result = self._mapper.add_scan(*scan.arguments)
+        result = self._mapper.add_scan(scan, scan.odometry)
         if self._locations.settle():
             self._write(Saved.METADATA)
         return result
@@ -142,7 +134,10 @@ class Session:
         """Begins a map, or goes on after a pause; ``path`` is where it is saved, empty for nowhere."""
         _check_text(path=path)
         if self._state is State.NOT_MAPPING and self._mapper.num_nodes > 0:
-            raise StateError("map/start: there is a map already; call map/clear first, or map/resume to go on with it")
+            raise StateError(
+                f"{self._naming('map/start')}: there is a map already; call {self._naming('map/clear')} first, or "
+                f"{self._naming('map/resume')} to go on with it"
+            )
         if path and not self._is_own(path):
             self._prepare("map/start", path)
         if self._state is State.PAUSED:
@@ -174,18 +169,19 @@ class Session:
 
     def resume(self, path: str, pose: Pose) -> None:
         """Goes on with the loaded map in a new chain; ``pose`` is about where the sensor is in the map frame."""
+        resume = self._naming("map/resume")
         if self._state is not State.NOT_MAPPING:
-            raise StateError(f"map/resume: the state is {self._state.value}; call map/stop first")
+            raise StateError(f"{resume}: the state is {self._state.value}; call {self._naming('map/stop')} first")
         if self._mapper.num_nodes == 0:
-            raise StateError("map/resume: no map is loaded; call map/load first")
+            raise StateError(f"{resume}: no map is loaded; call {self._naming('map/load')} first")
         _check_text(path=path)
         if path and self._is_own(path):
-            raise StateError(f"map/resume: {path} is the map to go on with, which stays as it is; give another path")
+            raise StateError(f"{resume}: {path} is the map to go on with, which stays as it is; give another path")
         x, y, theta = (float(value) for value in pose)
         distance = np.hypot(*(self.map.node_poses[:, :2] - (x, y)).T).min()
         if distance > _FAR:
             raise StateError(
-                f"map/resume: ({x:g}, {y:g}) is {distance:.0f} m from the map; give the sensor's pose in the map frame"
+                f"{resume}: ({x:g}, {y:g}) is {distance:.0f} m from the map; give the sensor's pose in the map frame"
             )
         if path:
             self._prepare("map/resume", path)
@@ -195,20 +191,27 @@ class Session:
 
     def notify_docked(self) -> bool:
         """Says that the robot stands at the dock it saw earlier; whether what it sees now fits the dock."""
+        docked = self._naming("map/notify_docked")
         if self._state is not State.MAPPING:
-            raise StateError(f"map/notify_docked: the state is {self._state.value}; it needs mapping")
+            raise StateError(f"{docked}: the state is {self._state.value}; it needs mapping")
+        if not self._mapper.has_pose:
+            raise StateError(
+                f"{docked}: no scan has been mapped yet, so there is nothing to link; drive and scan first"
+            )
         return self._mapper.notify_docked()
 
     def pause(self) -> None:
         """Stops taking scans until resume_from_paused or start."""
         if self._state is State.NOT_MAPPING:
-            raise StateError("map/pause: nothing is being mapped; call map/start first")
+            pause, start = self._naming("map/pause"), self._naming("map/start")
+            raise StateError(f"{pause}: nothing is being mapped; call {start} first")
         self._state = State.PAUSED
 
     def resume_from_paused(self) -> None:
         """Takes scans again; the link across the pause is very uncertain."""
         if self._state is State.NOT_MAPPING:
-            raise StateError("map/resume_from_paused: mapping is not paused; call map/start first")
+            resume, start = self._naming("map/resume_from_paused"), self._naming("map/start")
+            raise StateError(f"{resume}: mapping is not paused; call {start} first")
         if self._state is State.PAUSED:
             self._mapper.resume_from_paused()
             self._state = State.MAPPING
@@ -238,27 +241,33 @@ class Session:
         if self._state is State.MAPPING:
             created = self._locations.create_here(name_space, id)
         elif self._state is State.PAUSED:
-            raise StateError("graph_loc/create: mapping is paused; call map/resume_from_paused first")
+            resume = self._naming("map/resume_from_paused")
+            raise StateError(f"{self._naming('graph_loc/create')}: mapping is paused; call {resume} first")
         elif pose is None:
-            raise StateError("graph_loc/create: nothing is being mapped and no localiser tells where the robot is")
+            raise StateError(
+                f"{self._naming('graph_loc/create')}: nothing is being mapped and no localiser tells where the robot is"
+            )
         else:
             x, y, theta = (float(value) for value in pose)
             created = self._locations.create_at(name_space, id, (x, y, theta))
         self._write(Saved.METADATA)
         return created
 
-    def _create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
+    def create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
+        """Names points (x, y) of the map frame, all relative to the node that is nearest to their centroid."""
         for name_space, id in zip(name_spaces, ids, strict=False):  # their numbers are checked with the points'
             _check_text(namespace=name_space, id=id)
         self._locations.create_points(name_spaces, points, ids)
         self._write(Saved.METADATA)
 
-    def _delete_location(self, name_space: str, id: str) -> bool:
+    def delete_location(self, name_space: str, id: str) -> bool:
+        """Forgets a place; whether it was there."""
         deleted = self._locations.delete(name_space, id)
         self._write(Saved.METADATA)
         return deleted
 
-    def _clear_locations(self, name_space: str, use_as_prefix: bool) -> list[tuple[str, str]]:
+    def clear_locations(self, name_space: str, use_as_prefix: bool = False) -> list[tuple[str, str]]:
+        """Forgets all places of a namespace, or of all that begin with it, and returns them."""
         cleared = self._locations.clear(name_space, use_as_prefix)
         self._write(Saved.METADATA)
         return cleared
@@ -279,7 +288,7 @@ class Session:
 
     def _use(self, mapper: Mapper) -> None:
         self._mapper = mapper
-        self._locations = Locations(mapper)
+        self._locations = Locations(mapper, self._naming)
 
 
 def _check_text(**values: object) -> None:

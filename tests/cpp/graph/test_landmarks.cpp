@@ -7,7 +7,7 @@
 #include <random>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/graph/graph_costs.hpp"
+#include "oort/graph/internal/graph_costs.hpp"
 #include "oort/graph/landmarks.hpp"
 
 namespace oort {

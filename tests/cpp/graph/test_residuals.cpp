@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "oort/graph/residuals.hpp"
+#include "oort/graph/internal/residuals.hpp"
 
 namespace oort {
 namespace {

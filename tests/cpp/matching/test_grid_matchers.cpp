@@ -11,7 +11,7 @@
 #include "oort/matching/ceres_matcher.hpp"
 #include "oort/matching/correlative_matcher.hpp"
 #include "oort/matching/grid_score.hpp"
-#include "oort/matching/matching_costs.hpp"
+#include "oort/matching/internal/matching_costs.hpp"
 
 namespace oort {
 namespace {

@@ -6,9 +6,9 @@
 #include "localization_fixtures.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
 #include "oort/map/map_check.hpp"
-#include "oort/merging/append_map.hpp"
+#include "oort/merging/internal/append_map.hpp"
+#include "oort/merging/internal/map_views.hpp"
 #include "oort/merging/map_placement.hpp"
-#include "oort/merging/map_views.hpp"
 
 namespace oort {
 namespace {

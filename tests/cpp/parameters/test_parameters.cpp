@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/parameters/declare.hpp"
+#include "oort/parameters/internal/declare.hpp"
 #include "oort/parameters/table.hpp"
 
 namespace oort {

@@ -13,10 +13,10 @@
 #include "cloud_edits.hpp"
 #include "datasets.hpp"
 #include "oort/geometry/errors.hpp"
-#include "oort/storage/codec.hpp"
-#include "oort/storage/file_set.hpp"
+#include "oort/storage/internal/codec.hpp"
+#include "oort/storage/internal/file_set.hpp"
+#include "oort/storage/internal/md5.hpp"
 #include "oort/storage/map_file.hpp"
-#include "oort/storage/md5.hpp"
 #include "oort/storage/paths.hpp"
 #include "storage_fixtures.hpp"
 

@@ -9,9 +9,9 @@
 #include "cloud_edits.hpp"
 #include "oort/geometry/errors.hpp"
 #include "oort/map/map_check.hpp"
-#include "oort/storage/checksum_file.hpp"
-#include "oort/storage/codec.hpp"
-#include "oort/storage/md5.hpp"
+#include "oort/storage/internal/checksum_file.hpp"
+#include "oort/storage/internal/codec.hpp"
+#include "oort/storage/internal/md5.hpp"
 #include "storage_fixtures.hpp"
 
 namespace oort {

@@ -3,7 +3,7 @@
 // How a map's path may be written, and where links lead.
 #include <gtest/gtest.h>
 
-#include "oort/storage/file_set.hpp"
+#include "oort/storage/internal/file_set.hpp"
 #include "oort/storage/map_file.hpp"
 #include "oort/storage/paths.hpp"
 #include "storage_fixtures.hpp"

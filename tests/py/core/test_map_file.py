@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from oort import Map, Mapper, Parameters, _core, load_map, render_map, save_map
+from oort import LaserScan, Map, Mapper, Parameters, _core, load_map, render_map, save_map
 from oort.errors import MapFileError, OortError, ParameterError
 
 
@@ -82,7 +82,7 @@ def load_one_node() -> Map:
     """A map with one node, made by the mapper from one scan."""
     mapper = Mapper(Parameters())
     ranges = np.full(180, 2.0, dtype=np.float32)
-    mapper.add_scan(0.0, -np.pi / 2, np.pi / 180, 0.1, 5.0, ranges, (0.0, 0.0, 0.0))
+    mapper.add_scan(LaserScan(ranges, -np.pi / 2, np.pi / 180, 0.1, 5.0), (0.0, 0.0, 0.0))
     return mapper.map()
 
 

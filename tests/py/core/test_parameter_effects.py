@@ -148,7 +148,7 @@ def map_of(parameters: Parameters, scans: Sequence[Scan]) -> Map:
     mapper.set_map(session.map)
     mapper.begin_session((0.1, 0.05, 0.05))
     for s in scans[:70]:
-        mapper.add_scan(s.time, s.angle_min, s.angle_increment, s.range_min, s.range_max, s.ranges, s.odometry)
+        mapper.add_ranges(*s.readings, s.odometry)
     mapper.finish()
     return mapper.map()
 
@@ -216,7 +216,7 @@ def localized(map_: Map, parameters: Parameters, scans: Sequence[Scan]) -> str:
             ranges = np.full_like(ranges, np.inf)
         x, y, theta = s.odometry
         odometry = (x, y, theta) if number < len(scans) // 2 else (-y + 1.0, x, theta + np.pi / 2)
-        localizer.add_scan(s.time, s.angle_min, s.angle_increment, s.range_min, s.range_max, ranges, odometry)
+        localizer.add_ranges(s.time, s.angle_min, s.angle_increment, s.range_min, s.range_max, ranges, odometry)
         told.append(f"{localizer.state} {localizer.T_map_sensor} {localizer.covariance.tolist()}")
     return hashlib.sha256("\n".join(told).encode()).hexdigest()
 

@@ -23,7 +23,7 @@ def scans_of(drive: Drive) -> list[Scan]:
         time = float(drive.scan_stamps[k]) / 1e9
         limits = (drive.angle_min, drive.angle_increment, drive.range_min, drive.range_max)
         x, y, theta = drive.T_odom_base_at_scans[k]
-        scans.append(Scan(time, f"{time:.6f}", *limits, drive.ranges[k], (x, y, theta)))
+        scans.append(Scan(drive.ranges[k], *limits, time, stamp=f"{time:.6f}", odometry=(x, y, theta)))
     return scans
 
 

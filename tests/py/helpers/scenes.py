@@ -18,4 +18,5 @@ def room_scan(x: float, y: float, theta: float, time: float) -> Scan:
         )
     box = (1.5 + 0.6 - x - y) / (c + s)  # the line x + y = 2.1 stands for a sofa across the corner
     ranges = np.where((box > 0) & (box < walls), box, walls).astype(np.float32)
-    return Scan(time, f"{time:.6f}", -np.pi / 2, np.pi / 180, 0.05, 6.0, ranges, (x, y, theta))
+    limits = -np.pi / 2, np.pi / 180, 0.05, 6.0
+    return Scan(ranges, *limits, time, stamp=f"{time:.6f}", odometry=(x, y, theta))

@@ -82,14 +82,14 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> str:
         x, y, theta = COURSE.T_odom_base[k].tolist()
         session.add_scan(
             Scan(
-                100.0 + 0.1 * k,
-                f"{100.0 + 0.1 * k:.6f}",
+                COURSE.ranges[k],
                 COURSE.angle_min,
                 COURSE.angle_increment,
                 COURSE.range_min,
                 COURSE.range_max,
-                COURSE.ranges[k],
-                (x, y, theta),
+                100.0 + 0.1 * k,
+                stamp=f"{100.0 + 0.1 * k:.6f}",
+                odometry=(x, y, theta),
             )
         )
     session.stop()

@@ -16,7 +16,7 @@ pytest.importorskip("rospy")
 import genpy
 from visualization_msgs.msg import Marker, MarkerArray
 
-from oort import Map, Mapper, Parameters
+from oort import LaserScan, Map, Mapper, Parameters
 from oort.node.markers import graph_markers
 from oort.node.messages import yaw
 
@@ -115,7 +115,7 @@ def test_an_empty_map_deletes_what_was_shown() -> None:
 def test_a_mapped_drive() -> None:
     mapper = Mapper(Parameters())
     for k in range(4):
-        mapper.add_scan(0.1 * k, -1.5, 0.02, 0.1, 5.0, np.linspace(1.0, 2.0, 150), (0.5 * k, 0.0, 0.0))
+        mapper.add_scan(LaserScan(np.linspace(1.0, 2.0, 150), -1.5, 0.02, 0.1, 5.0, 0.1 * k), (0.5 * k, 0.0, 0.0))
     map_ = mapper.map()
     kinds = by_kind(graph_markers(map_, [], "map", STAMP))
     assert len(kinds["nodes"][0].points) == len(map_) == 4

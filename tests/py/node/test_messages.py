@@ -23,6 +23,7 @@ from rosbags.highlevel import AnyReader
 from sensor_msgs.msg import LaserScan
 
 from helpers.recording_files import Bag, roll_yaw_quaternion
+from oort import LaserScan as Scan2d
 from oort import Mapper, Parameters, render_map
 from oort.errors import InputError
 from oort.node import messages
@@ -106,7 +107,7 @@ def test_large_grids_do_not_stall_the_node() -> None:
 
 def test_a_rendered_map_becomes_a_message() -> None:
     mapper = Mapper(Parameters())
-    mapper.add_scan(0.0, -1.5, 0.02, 0.1, 5.0, np.linspace(1.0, 2.0, 150), (0.0, 0.0, 0.0))
+    mapper.add_scan(Scan2d(np.linspace(1.0, 2.0, 150), -1.5, 0.02, 0.1, 5.0), (0.0, 0.0, 0.0))
     grid, _ = render_map(mapper.map(), Parameters())
     assert grid.width != grid.height  # else a mix-up would go unseen
     message = messages.grid_message(grid, "map", STAMP)

@@ -53,7 +53,7 @@ def home(course: Course, tmp_path_factory: pytest.TempPathFactory) -> str:
     session.start(base)
     limits = course.angle_min, course.angle_increment, course.range_min, course.range_max
     for k, pose in enumerate(course.T_odom_base.tolist()):
-        session.add_scan(Scan(0.1 * k, f"{0.1 * k:.1f}", *limits, course.ranges[k], tuple(pose)))
+        session.add_scan(Scan(course.ranges[k], *limits, 0.1 * k, stamp=f"{0.1 * k:.1f}", odometry=tuple(pose)))
     session.stop()
     return base
 

@@ -43,7 +43,7 @@ def scans_of(drive: Drive, range_max: float) -> list[Scan]:
     sensor = drive.angle_min, drive.angle_increment, drive.range_min, range_max
     odometry = drive.T_odom_base_at_scans.tolist()
     return [
-        Scan(time, f"{time:.6f}", *sensor, ranges, (x, y, theta))
+        Scan(ranges, *sensor, time, stamp=f"{time:.6f}", odometry=(x, y, theta))
         for time, ranges, (x, y, theta) in zip(drive.scan_times.tolist(), drive.ranges, odometry, strict=True)
     ]
 

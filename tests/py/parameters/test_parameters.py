@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from conftest import ROOT
+from helpers.relaxed_json import Section, parse
 from oort.cli.parameters import main
 from oort.errors import ParameterError
 from oort.parameters import Parameters, packaged_parameters, packaged_path, parameter_table, read_parameters
-from oort.parameters.relaxed_json import Section, parse
 
 DOCUMENTED = ROOT / "tests/py/data/documented_params.json.txt"
 REFERENCE = Path(os.environ.get("OORT_REFERENCE", ROOT.parent / "shared" / "reference" / "oort_ros.md"))

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "oort/graph/residuals.hpp"
+#include "oort/graph/internal/residuals.hpp"
 
 namespace oort {
 namespace {

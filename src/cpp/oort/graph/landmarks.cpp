@@ -14,7 +14,7 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/graph/graph_check.hpp"
-#include "oort/graph/graph_costs.hpp"
+#include "oort/graph/internal/graph_costs.hpp"
 
 namespace oort {
 namespace {

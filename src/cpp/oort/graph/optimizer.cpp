@@ -10,8 +10,8 @@
 #include "oort/geometry/errors.hpp"
 #include "oort/graph/graph_check.hpp"
 #include "oort/graph/graph_solver.hpp"
+#include "oort/graph/internal/residuals.hpp"
 #include "oort/graph/landmarks.hpp"
-#include "oort/graph/residuals.hpp"
 #include "oort/graph/search.hpp"
 
 namespace oort {

@@ -10,7 +10,7 @@
 
 #include "oort/graph/graph_check.hpp"
 #include "oort/graph/graph_solver.hpp"
-#include "oort/graph/residuals.hpp"
+#include "oort/graph/internal/residuals.hpp"
 #include "oort/maintenance/scan_alignment.hpp"
 #include "oort/maintenance/view_pairs.hpp"
 

@@ -37,7 +37,7 @@ Mapper::Mapper(const Parameters& parameters, const Pose2& T_base_sensor)
 
 ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
   if (local_.begins_map() && map_.node_count() > 0) {
-    throw StateError("the map was loaded: call begin_session() before the first scan");
+    throw StateError("Mapper.add_scan: the map was loaded; call Mapper.begin_session before the first scan");
   }
   std::vector<Correction> due;
   {
@@ -62,7 +62,8 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, con
 
 bool Mapper::notify_docked() {
   if (!has_pose()) {
-    throw StateError("notify_docked: no scan has been mapped yet, so there is nothing to link; drive and scan first");
+    throw StateError(
+        "Mapper.notify_docked: no scan has been mapped yet, so there is nothing to link; drive and scan first");
   }
   take_effect(lane_->settle());
   if (const std::optional<ChainNode> node = local_.make_node()) {
@@ -75,7 +76,7 @@ bool Mapper::notify_docked() {
 }
 
 void Mapper::begin_session(const Pose2& T_map_sensor) {
-  check_reach(T_map_sensor, "the start pose of a session");
+  check_reach(T_map_sensor, "Mapper.begin_session: the start pose");
   take_effect(lane_->settle());
   lane_->slam().begin_session();
   if (map_.node_count() == 0) {
@@ -94,7 +95,7 @@ void Mapper::finish() {
 
 void Mapper::set_map(const Map& map) {
   const std::optional<std::string> defect = find_defect(map);
-  if (defect) throw InputError("this map cannot be used: " + *defect);
+  if (defect) throw InputError("Mapper.set_map: this map cannot be used: " + *defect);
   lane_->settle();
   lane_->slam().set_map(map);
   map_.set_map(lane_->slam().map());
@@ -103,7 +104,7 @@ void Mapper::set_map(const Map& map) {
 }
 
 Pose2 Mapper::sensor_pose() const {
-  if (!has_pose()) throw StateError("no pose of the sensor is known: no scan has been mapped yet");
+  if (!has_pose()) throw StateError("Mapper.sensor_pose: no scan has been mapped yet");
   return map().graph.nodes[local_.newest_node()].pose * local_.T_newest_sensor();
 }
 

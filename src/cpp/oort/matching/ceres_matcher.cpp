@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "oort/matching/grid_score.hpp"
-#include "oort/matching/matching_costs.hpp"
+#include "oort/matching/internal/matching_costs.hpp"
 
 namespace oort {
 namespace {

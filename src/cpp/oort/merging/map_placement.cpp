@@ -11,7 +11,7 @@
 #include "oort/localization/relocalizer.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
-#include "oort/merging/map_views.hpp"
+#include "oort/merging/internal/map_views.hpp"
 
 namespace oort {
 namespace {

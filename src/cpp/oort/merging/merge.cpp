@@ -9,8 +9,8 @@
 #include "oort/geometry/errors.hpp"
 #include "oort/map/map_check.hpp"
 #include "oort/mapper/mapper.hpp"
-#include "oort/merging/append_map.hpp"
-#include "oort/merging/cross_closures.hpp"
+#include "oort/merging/internal/append_map.hpp"
+#include "oort/merging/internal/cross_closures.hpp"
 
 namespace oort {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 // The matchers on probability grids, after Cartographer: cartographer_matcher and branch_and_bound_matcher.
-#include "oort/parameters/declare.hpp"
+#include "oort/parameters/internal/declare.hpp"
 
 namespace oort {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 // The keys at the top of params.json, and those of the dock.
-#include "oort/parameters/declare.hpp"
+#include "oort/parameters/internal/declare.hpp"
 
 namespace oort {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 // The keys of localisation on a saved map: none is documented of the original, which had a particle filter beside it.
-#include "oort/parameters/declare.hpp"
+#include "oort/parameters/internal/declare.hpp"
 
 namespace oort {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 // loop_closure_graph_builder: where loops are looked for and which matches are believed.
-#include "oort/parameters/declare.hpp"
+#include "oort/parameters/internal/declare.hpp"
 
 namespace oort {
 namespace {

@@ -3,10 +3,11 @@
 #include "oort/parameters/table.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/parameters/declare.hpp"
+#include "oort/parameters/internal/declare.hpp"
 
 namespace oort {
 namespace {
@@ -26,8 +27,28 @@ std::vector<DeclaredParameter> declare(Parameters& p) {
 DeclaredParameter find(Parameters& parameters, const std::string& path) {
   std::vector<DeclaredParameter> rows = declare(parameters);
   const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.entry.path == path; });
-  if (row == rows.end()) throw ParameterError("unknown parameter \"" + path + "\"; docs/parameters.md lists all");
+  if (row == rows.end()) throw ParameterError(unknown_parameter(path));
   return std::move(*row);
+}
+
+/// The length of the longest common subsequence.
+std::size_t common_letters(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> above(b.size() + 1, 0), row(b.size() + 1, 0);
+  for (const char letter : a) {
+    for (std::size_t k = 0; k < b.size(); ++k)
+      row[k + 1] = letter == b[k] ? above[k] + 1 : std::max(above[k + 1], row[k]);
+    std::swap(above, row);
+  }
+  return above.back();
+}
+
+/// How alike two paths are, in [0, 1]: the share of their letters that they have in common.
+double similarity(const std::string& a, const std::string& b) {
+  return 2.0 * static_cast<double>(common_letters(a, b)) / static_cast<double>(a.size() + b.size());
+}
+
+std::string last_key(const std::string& path) {
+  return path.substr(path.rfind('.') + 1);  // all of it where there is no point
 }
 
 void require(bool holds, const std::string& section, const std::string& rule) {
@@ -88,6 +109,23 @@ void check_parameters(const Parameters& parameters) {
   const DockGraphBuilderParameters& dock = parameters.dock_graph_builder;
   require(dock.dock_match_submap_size < dock.dock_submap_size, "dock_graph_builder",
           "dock_match_submap_size must be less than dock_submap_size");
+}
+
+std::string unknown_parameter(const std::string& path) {
+  std::set<std::string> known;
+  for (const ParameterEntry& entry : parameter_table()) {
+    known.insert(entry.path);
+    for (std::size_t k = entry.path.find('.'); k != std::string::npos; k = entry.path.find('.', k + 1)) {
+      known.insert(entry.path.substr(0, k));
+    }
+  }
+  const std::string key = last_key(path);
+  const auto likeness = [&](const std::string& other) {  // a key in a wrong section is nearer than any other
+    return std::make_pair(last_key(other) == key, similarity(path, other));
+  };
+  const std::string& nearest = *std::max_element(
+      known.begin(), known.end(), [&](const auto& a, const auto& b) { return likeness(a) < likeness(b); });
+  return "unknown parameter \"" + path + "\"; the nearest known is \"" + nearest + "\"";
 }
 
 std::string type_name(const ParameterValue& value) {

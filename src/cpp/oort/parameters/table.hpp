@@ -58,6 +58,9 @@ void set_parameter(Parameters& parameters, const std::string& path, const Parame
 /// Checks values against each other, which set_parameter() cannot. Throws ParameterError.
 void check_parameters(const Parameters& parameters);
 
+/// The message for a path that is in no table, with the nearest path or section that is.
+std::string unknown_parameter(const std::string& path);
+
 /// "bool", "integer", "number" or "string".
 std::string type_name(const ParameterValue& value);
 

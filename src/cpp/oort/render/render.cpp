@@ -129,4 +129,8 @@ RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, co
   return {std::move(map), std::move(map_cleaned)};
 }
 
+RenderedMap render(const Map& map, const Parameters& parameters) {
+  return render(map.graph.nodes, map.clouds, parameters.output_map);
+}
+
 }  // namespace oort

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "oort/graph/graph.hpp"
+#include "oort/map/map.hpp"
 #include "oort/map/point_clouds.hpp"
 #include "oort/parameters/parameters.hpp"
 #include "oort/render/occupancy_grid.hpp"
@@ -25,5 +26,8 @@ struct RenderedMap {
 /// Throws ParameterError for parameters that make no sense, InputError (naming the node) if the counts differ, a pose
 /// is not finite or a node or its cloud lies too far off for a grid.
 RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, const OutputMapParameters& parameters);
+
+/// The same of a whole map; of the parameters output_map counts.
+RenderedMap render(const Map& map, const Parameters& parameters = {});
 
 }  // namespace oort

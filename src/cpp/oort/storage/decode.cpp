@@ -8,7 +8,7 @@
 #include <new>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/storage/codec.hpp"
+#include "oort/storage/internal/codec.hpp"
 #include "oort_map.capnp.h"
 
 namespace oort {

@@ -6,7 +6,7 @@
 #include <kj/io.h>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/storage/codec.hpp"
+#include "oort/storage/internal/codec.hpp"
 #include "oort_map.capnp.h"
 
 // The order in which the parts of a message are made decides where they lie in it. It is the original's order here, so

@@ -8,8 +8,8 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/map/map_check.hpp"
-#include "oort/storage/codec.hpp"
-#include "oort/storage/file_set.hpp"
+#include "oort/storage/internal/codec.hpp"
+#include "oort/storage/internal/file_set.hpp"
 #include "oort/storage/paths.hpp"
 
 namespace oort {

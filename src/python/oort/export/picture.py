@@ -52,12 +52,28 @@ def write_picture(
     rejected: ArrayLike = (),
     locations: Sequence[tuple[str, Pose]] = (),
 ) -> None:
-    """Writes a PNG; the same arguments give the same bytes.
+    """Writes a PNG, see draw_picture. Raises OortError too, if the file cannot be written."""
+    png = draw_picture(
+        cells, resolution, origin, trajectory=trajectory, accepted=accepted, rejected=rejected, locations=locations
+    )
+    write_atomically(Path(path), png)
+
+
+def draw_picture(
+    cells: ArrayLike,
+    resolution: float,
+    origin: Pose,
+    *,
+    trajectory: ArrayLike = (),
+    accepted: ArrayLike = (),
+    rejected: ArrayLike = (),
+    locations: Sequence[tuple[str, Pose]] = (),
+) -> bytes:
+    """Draws a PNG; the same arguments give the same bytes.
 
     `cells` (height, width), `resolution` [m] and `origin` are as in GridMap. `trajectory` is (n, 2 or more) with x, y
     [m] first; `accepted` and `rejected` are the ends of loop closures, (k, 2, 2) x, y [m]; `locations` are names with
-    their poses. All are in the map's frame. Raises InputError for an unusable grid, OortError if the file cannot be
-    written.
+    their poses. All are in the map's frame. Raises InputError for an unusable grid.
     """
     grid, scale = _scaled(grey_picture(cells))
     canvas = _Canvas(grid, resolution / scale, origin)
@@ -78,7 +94,7 @@ def write_picture(
             ("locations", _PLACE, len(locations)),
         ]
     )
-    _write(canvas, path)
+    return _png(canvas)
 
 
 def write_closures_picture(
@@ -105,13 +121,13 @@ def write_closures_picture(
             canvas.dot(line[1], colours[name], 2)
     counts = {name: np.asarray(closures[name]).size // 4 for name in names}
     canvas.legend([(f"{name} {counts[name]}", colours[name], counts[name]) for name in reversed(names)])
-    _write(canvas, path)
+    write_atomically(Path(path), _png(canvas))
 
 
-def _write(canvas: "_Canvas", path: str | os.PathLike[str]) -> None:
+def _png(canvas: "_Canvas") -> bytes:
     buffer = io.BytesIO()
     canvas.image.save(buffer, format="PNG")
-    write_atomically(Path(path), buffer.getvalue())
+    return buffer.getvalue()
 
 
 def _scaled(grey: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], float]:

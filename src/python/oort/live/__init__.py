@@ -4,7 +4,8 @@
 
 from oort.live.inbox import UnusableScanError
 from oort.live.listener import Listener
+from oort.live.mapper import LiveMapper
 from oort.live.session import LiveSession
 from oort.live.snapshot import Drawing, Snapshot
 
-__all__ = ["Drawing", "Listener", "LiveSession", "Snapshot", "UnusableScanError"]
+__all__ = ["Drawing", "Listener", "LiveMapper", "LiveSession", "Snapshot", "UnusableScanError"]

@@ -11,6 +11,7 @@ from oort._core import Map, Parameters, render_map
 from oort.errors import StateError
 from oort.live.listener import Listener
 from oort.live.snapshot import Drawing, Snapshot
+from oort.naming import Naming, service
 
 MAP_TIMEOUT = 10.0  # [s] that latest() waits
 _INTERVAL = 1.0  # [s] between drawings while mapping
@@ -21,8 +22,11 @@ _LOOK = 0.2  # [s] between looks at what became of a drawing
 class Gallery:
     """A thread that draws revisions of the map; each once, unless it is asked for again."""
 
-    def __init__(self, parameters: Parameters, listener: Listener, wake: Callable[[], None]) -> None:
+    def __init__(
+        self, parameters: Parameters, listener: Listener, wake: Callable[[], None], naming: Naming = service
+    ) -> None:
         """Drawings go to ``listener`` from the drawing thread; ``wake`` makes the mapping thread call tick()."""
+        self._naming = naming
         self._parameters = parameters
         self._listener = listener
         self._wake = wake
@@ -60,8 +64,11 @@ class Gallery:
             if self._drawing is not None:
                 return self._drawing
             if self._why:
-                raise StateError(f"map/map: the map cannot be drawn: {self._why}")
-        raise StateError(f"map/map: there is no map after {MAP_TIMEOUT:.0f} s; call map/start and drive, or map/load")
+                raise StateError(f"{self._naming('map/map')}: the map cannot be drawn: {self._why}")
+        start, load = self._naming("map/start"), self._naming("map/load")
+        raise StateError(
+            f"{self._naming('map/map')}: there is no map after {MAP_TIMEOUT:.0f} s; call {start} and drive, or {load}"
+        )
 
     # ---- for the mapping thread ----
 

@@ -10,6 +10,7 @@ from oort.errors import MapFileError
 from oort.live.listener import Listener
 from oort.live.paths import make_room, set_aside
 from oort.live.saver import Saver
+from oort.naming import Naming, service
 from oort.session import Session, State
 
 AUTOSAVE_INTERVAL = 15.0  # [s]
@@ -18,8 +19,9 @@ AUTOSAVE_INTERVAL = 15.0  # [s]
 class Keeper:
     """Sees to it that changes of the map reach the disk, at the latest every 15 s; used by the mapping thread."""
 
-    def __init__(self, listener: Listener, clock: Callable[[], float]) -> None:
+    def __init__(self, listener: Listener, clock: Callable[[], float], naming: Naming = service) -> None:
         """``clock`` [s] is what the interval goes by."""
+        self._naming = naming
         self._listener = listener
         self._clock = clock
         self.saver = Saver(listener.saved, self._failed)
@@ -37,6 +39,7 @@ class Keeper:
 
     def prepare(self, call: str, path: str) -> None:
         """Makes a path ready for the map. Raises MapFileError if that cannot be or another map would be lost."""
+        call = self._naming(call)
         self.saver.wait()
         make_room(call, path)
         copy = set_aside(call, path)
@@ -82,8 +85,8 @@ class Keeper:
         self.saver.wait()
         if self._unsaved and _can_be_saved(session):
             raise MapFileError(
-                f"map/load: the map in memory would be lost, for it cannot be saved ({self.saver.error}); correct "
-                "that, or call map/clear first"
+                f"{self._naming('map/load')}: the map in memory would be lost, for it cannot be saved "
+                f"({self.saver.error}); correct that, or call {self._naming('map/clear')} first"
             )
 
     def _failed(self, why: str) -> None:

@@ -13,6 +13,7 @@ from oort.live.inbox import Answer, Inbox
 from oort.live.listener import Listener
 from oort.live.snapshot import Snapshot
 from oort.locations import Pose
+from oort.naming import Naming, service
 from oort.session import State
 
 _CREATE = "graph_loc/create"
@@ -30,8 +31,10 @@ class Places:
         listener: Listener,
         snapshot: Callable[[], Snapshot],
         localiser: Callable[[], Pose | None],
+        naming: Naming = service,
     ) -> None:
         """Reads the session as it is now by ``snapshot``, and T_map_sensor while nothing is mapped by ``localiser``."""
+        self._naming = naming
         self._inbox = inbox
         self._figures = figures
         self._listener = listener
@@ -69,12 +72,14 @@ class Places:
 
     def locate(self, name_space: str, id: str) -> Pose:
         """Where a place is now in the map frame. Raises StateError if it is not known, or not yet."""
+        locate = self._naming("graph_loc/locate")
         place = name_space, id
         snapshot = self._snapshot()
         if self._requested[place] or place in snapshot.waiting:
-            raise StateError(f"graph_loc/locate: mapping has not reached {name_space!r}/{id!r} yet; ask again later")
+            raise StateError(f"{locate}: mapping has not reached {name_space!r}/{id!r} yet; ask again later")
         if place not in snapshot.places:
-            raise StateError(f"graph_loc/locate: no place {name_space!r}/{id!r}; graph_loc/list shows the known ones")
+            shows = self._naming("graph_loc/list")
+            raise StateError(f"{locate}: no place {name_space!r}/{id!r}; {shows} shows the known ones")
         return snapshot.places[place]
 
     def here(self, call: str) -> Pose:
@@ -83,26 +88,28 @@ class Places:
         if pose is None:
             raise StateError(
                 f"{call}: nothing is being mapped, and there is no fresh transform from map to sensor; start a "
-                "localiser and wait until graph_loc/is_ready is true"
+                f"localiser and wait until {self._naming('graph_loc/is_ready')} is true"
             )
         x, y, theta = map(float, pose)  # what goes into the events log
         return x, y, theta
 
     def _pose(self) -> Pose | None:
         """T_map_sensor for a place that is created now; None: mapping will know. Raises StateError."""
+        create = self._naming(_CREATE)
         snapshot = self._snapshot()
         if snapshot.state is State.MAPPING:
             if snapshot.odom_pose is None and self._figures.seconds_without_scan > _SILENCE:
                 raise StateError(
-                    f"{_CREATE}: no scan has been mapped and none is arriving, so the robot's place is not known; "
+                    f"{create}: no scan has been mapped and none is arriving, so the robot's place is not known; "
                     "check the scan topic"
                 )
             return None
         if snapshot.state is State.PAUSED:
-            raise StateError(f"{_CREATE}: mapping is paused; call map/resume_from_paused first")
+            raise StateError(f"{create}: mapping is paused; call {self._naming('map/resume_from_paused')} first")
         if snapshot.num_nodes == 0:
-            raise StateError(f"{_CREATE}: there is no map; call map/start or map/load first")
-        return self.here(_CREATE)
+            start, load = self._naming("map/start"), self._naming("map/load")
+            raise StateError(f"{create}: there is no map; call {start} or {load} first")
+        return self.here(create)
 
     def _made_late(self, place: tuple[str, str], future: "Future[Answer]") -> None:
         self._forget_request(place)

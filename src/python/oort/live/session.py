@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, wait
-from typing import Any
+from typing import Any, TypeVar
 
 from oort._core import Map, Parameters, Saved, ScanResult
 from oort.errors import StateError
@@ -21,17 +21,21 @@ from oort.live.paths import check_absolute
 from oort.live.places import Places
 from oort.live.snapshot import Snapshot, glance, look_at
 from oort.locations import Pose
+from oort.naming import Naming, service
 from oort.recording import Scan
 from oort.session import Session, State
 
 _START, _RESUME, _STOP, _LOAD, _CLEAR = "map/start", "map/resume", "map/stop", "map/load", "map/clear"
-_DOCKED, _REDRAW = "map/notify_docked", "map/republish_maps"
+_DOCKED, _REDRAW, _CREATE = "map/notify_docked", "map/republish_maps", "graph_loc/create"
+_WORK = "(work)"  # not a call of Session, and in no log
 _CHANGE_MAP = (_LOAD, _CLEAR, _DOCKED, _STOP)
 _SHOW_MAP = (_LOAD, _RESUME, _STOP, _REDRAW)
 
 _BACKWARDS = 1.0  # [s]; a scan that is older than the last one by more says that the clock was set back
 _IDLE = 0.2  # [s] between looks at the clock when nothing comes
 _CLOSING = 5.0  # [s] for what is ready in the queue when the session is closed
+
+_Result = TypeVar("_Result")
 
 
 class LiveSession:
@@ -45,21 +49,26 @@ class LiveSession:
         clock: Callable[[], float] = time.monotonic,
         localiser: Callable[[], Pose | None] = lambda: None,
         event_log: EventLog | None = None,
+        naming: Naming = service,
+        draws: bool = True,
     ) -> None:
         """Starts the threads.
 
         ``clock`` [s] is what saving goes by; ``localiser`` tells T_map_sensor while nothing is being mapped, or None.
+        ``naming`` is how messages name the calls; ``draws``: whether the map is drawn when it changes.
         """
+        self._naming = naming
+        self._draws = draws
         self._listener = guarded(listener)
         self.inbox = Inbox()
         self.figures = Figures()
-        self.gallery = Gallery(parameters, self._listener, self.inbox.wake)
-        self.keeper = Keeper(self._listener, clock)
-        self.places = Places(self.inbox, self.figures, self._listener, lambda: self._snapshot, localiser)
+        self.gallery = Gallery(parameters, self._listener, self.inbox.wake, naming)
+        self.keeper = Keeper(self._listener, clock, naming)
+        self.places = Places(self.inbox, self.figures, self._listener, lambda: self._snapshot, localiser, naming)
 
         self._clock = clock
         self._event_log = event_log
-        self._session = Session(parameters, save=self._save, prepare=self.keeper.prepare)
+        self._session = Session(parameters, save=self._save, prepare=self.keeper.prepare, naming=naming)
         self._snapshot = Snapshot()
         self._mount: Pose | None = None  # not yet told to the session
         self._saves: list[Future[Saved]] = []  # of the call that is being made
@@ -97,7 +106,7 @@ class LiveSession:
         Raises StateError or MapFileError if the call cannot be made or its result not be saved.
         """
         if name in (_START, _RESUME, _LOAD) and args:
-            check_absolute(name, args[0])
+            check_absolute(self._naming(name), args[0])
         answer = self.inbox.add_call(name, args).result()
         if answer.drawing is not None:
             wait([answer.drawing])
@@ -105,11 +114,22 @@ class LiveSession:
             save.result()
         return answer.result
 
+    def run(self, work: Callable[[Session], _Result]) -> _Result:
+        """Does something with the session that changes no map, in its turn; returns when what it saved is on the disk.
+
+        Raises MapFileError if its result cannot be saved.
+        """
+        result: _Result = self.call(_WORK, [work])
+        return result
+
     def redraw(self) -> None:
         """Shows the listener the map again. Raises StateError if there is none."""
         drawing = self.inbox.add_call(_REDRAW, ()).result().drawing
         if drawing is None:
-            raise StateError(f"{_REDRAW}: there is no map; call map/start and drive, or map/load")
+            raise StateError(
+                f"{self._naming(_REDRAW)}: there is no map; call {self._naming(_START)} and drive, or "
+                f"{self._naming(_LOAD)}"
+            )
         drawing.result()
 
     def close(self) -> None:
@@ -133,7 +153,8 @@ class LiveSession:
             elif item is not None:
                 self._make(item)
             self.keeper.tick(self._session)
-            self.gallery.tick(self._snapshot, lambda: self._session.map)
+            if self._draws:
+                self.gallery.tick(self._snapshot, lambda: self._session.map)
             if self._closing:
                 deadline = -math.inf if item is None else min(deadline, time.monotonic() + _CLOSING)
         self.keeper.save_now(self._session)
@@ -181,7 +202,7 @@ class LiveSession:
         self.figures.clock_jumps += 1
         self._listener.trouble(
             f"the scans' clock went back by {seconds:.1f} s: the map goes on with a very uncertain link. If a "
-            "recording was begun again, call map/clear and map/start"
+            f"recording was begun again, call {self._naming(_CLEAR)} and {self._naming(_START)}"
         )
         self._call("map/pause", ())
         self._call("map/resume_from_paused", ())
@@ -201,15 +222,20 @@ class LiveSession:
         if name == _LOAD:
             self.keeper.settle(self._session)
         self._saves = []
-        result = None if name == _REDRAW else self._call(name, args)
+        result = self._result(name, args)
         self._snapshot = look_at(self._session, before, self._reported_frame, map_changed=name in _CHANGE_MAP)
         saves, self._saves = self._saves, []
         self._follow_up(name, result, before)
         self._listener.call_made(self._snapshot)
         drawing = None
-        if name in _SHOW_MAP and self._snapshot.num_nodes > 0:
+        if self._draws and name in _SHOW_MAP and self._snapshot.num_nodes > 0:
             drawing = self.gallery.draw(self._snapshot.revision, self._session.map)
         return Answer(result, saves, drawing)
+
+    def _result(self, name: str, args: Sequence[Any]) -> Any:
+        if name == _REDRAW:
+            return None
+        return args[0](self._session) if name == _WORK else self._call(name, args)
 
     def _follow_up(self, name: str, result: Any, before: Snapshot) -> None:
         """What a call means beyond the session itself."""
@@ -222,10 +248,12 @@ class LiveSession:
         if name in (_START, _DOCKED):
             self.keeper.changed()
         if name == _DOCKED and not result:
-            self._listener.trouble(f"{_DOCKED}: nothing was linked: what is seen does not fit the dock")
+            self._listener.trouble(f"{self._naming(_DOCKED)}: nothing was linked: what is seen does not fit the dock")
         if name == _STOP and before.waiting:
             places = ", ".join(f"{space!r}/{id!r}" for space, id in sorted(before.waiting))
-            self._listener.trouble(f"graph_loc/create: no scan came before {_STOP}, so {places} has no pose")
+            self._listener.trouble(
+                f"{self._naming(_CREATE)}: no scan came before {self._naming(_STOP)}, so {places} has no pose"
+            )
         change = before.state, self._snapshot.state
         if change == (State.NOT_MAPPING, State.MAPPING):
             self._last_scan_time = -math.inf

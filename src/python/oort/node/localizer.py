@@ -201,7 +201,7 @@ class LocalizerNode:
         scan, mount = item.scan, self._mount
         assert mount is not None  # what resolved the scan has set it
         localizer = self._localizer_at(mount)
-        localizer.add_scan(*scan.arguments)
+        localizer.add_scan(scan, scan.odometry)
         self._see(Sighting.of(localizer, scan.reported_frame))
         self._figures.mapped(None, time.monotonic() - started)
         self._tell(scan, mount)

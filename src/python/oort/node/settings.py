@@ -8,10 +8,10 @@ from typing import Any
 
 import rospy
 
-from oort._core import Parameters
+from oort._core import Parameters, unknown_parameter
 from oort.errors import ParameterError
 from oort.parameters import read_parameters
-from oort.parameters.reader import set_parameter, unknown_parameter
+from oort.parameters.reader import set_parameter
 from oort.recording.limits import ScanLimits
 
 _LIMITS = ("min_range", "max_range", "mask")

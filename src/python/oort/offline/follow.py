@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from oort._core import Localizer, Map, Parameters, ReferenceMap
+from oort._core import Map, Parameters
 from oort.errors import InputError
-from oort.localization import start_covariance
+from oort.localization import Localizer, start_covariance
 from oort.poses import compose
 from oort.recording import Pose, Recording, Scan
 from oort.report.stopwatch import Stopwatch
@@ -53,14 +53,14 @@ def follow(
 
     Raises InputError if there is no scan, or the map is empty or contradicts itself.
     """
-    localizer = Localizer(ReferenceMap(map_, parameters), parameters, recording.sensor_on_base)
+    localizer = Localizer(map_, parameters, recording.sensor_on_base)
     if start is not None:
         localizer.start_at(start, start_covariance())
     drive = LocalizedDrive(recording, localizer)
     times: list[float] = []
     for scan in scans:
         started = time.perf_counter()
-        localizer.add_scan(*scan.arguments)
+        localizer.add_scan(scan, scan.odometry)
         drive.watch.scan_seconds.append(time.perf_counter() - started)
         times.append(scan.time)
         _note(drive, scan)

@@ -11,6 +11,7 @@ from oort._core import Parameters
 from oort.errors import InputError, OortError
 from oort.evaluation.attempts import MOST
 from oort.events import Event
+from oort.naming import service
 from oort.offline.progress import with_progress
 from oort.offline.results import Drive
 from oort.offline.schedule import make_schedule
@@ -53,13 +54,19 @@ class _Caller:
             self.recorder.forget_nodes()
 
 
-def replay(recording: Recording, parameters: Parameters, options: ReplayOptions) -> Drive:
+def replay(
+    recording: Recording,
+    parameters: Parameters | None = None,
+    options: ReplayOptions = ReplayOptions(quiet=True),
+) -> Drive:
     """Runs a whole recording through a session, in the order of the recording, and returns what came of it.
 
-    Nothing is written: write_results() does that. Raises InputError if no scan could be mapped.
+    ``parameters`` are the defaults if not given. Nothing is written: write_results() does that. Raises InputError if no
+    scan could be mapped.
     """
+    parameters = Parameters() if parameters is None else parameters
     watch = Stopwatch()
-    session = Session(parameters, recording.sensor_on_base, keep_attempts=MOST)
+    session = Session(parameters, recording.sensor_on_base, naming=service, keep_attempts=MOST)
     recorder = TrajectoryRecorder(recording.sensor_on_base)
     schedule = make_schedule(options.events, _Caller(session, recorder))
     times: list[float] = []

@@ -45,6 +45,11 @@ class Drive:
     scan_hits: Sequence[float] = ()
     """hit fractions of the scans that were matched"""
 
+    @property
+    def map(self) -> Map:
+        """The map of the drive."""
+        return self.session.map
+
 
 @dataclass(frozen=True)
 class Results:
@@ -63,7 +68,7 @@ def write_results(drive: Drive, out: Path, map_path: str) -> Results:
     If the drive keeps attempts, closures.csv and closures.png too. What cannot be written is told in the results, and
     all else is written all the same. Raises OSError if there can be no folder.
     """
-    map_ = drive.session.map
+    map_ = drive.map
     outputs = Outputs()
     out.mkdir(parents=True, exist_ok=True)
     outputs.write(f"the map {map_path}", lambda: save_map(map_path, map_))

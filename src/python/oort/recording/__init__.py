@@ -3,6 +3,6 @@
 """Recordings of robots: one way to read CARMEN logs and ROS 1 and ROS 2 bags."""
 
 from oort.recording.open import ACCEPTED, open_recording
-from oort.recording.types import Pose, Recording, Scan
+from oort.recording.types import LaserScan, Pose, Recording, Scan, Sweep
 
-__all__ = ["ACCEPTED", "Pose", "Recording", "Scan", "open_recording"]
+__all__ = ["ACCEPTED", "LaserScan", "Pose", "Recording", "Scan", "Sweep", "open_recording"]

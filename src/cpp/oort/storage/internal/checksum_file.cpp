@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/storage/checksum_file.hpp"
+#include "oort/storage/internal/checksum_file.hpp"
 
 #include <algorithm>
 #include <sstream>

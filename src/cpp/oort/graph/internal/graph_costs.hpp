@@ -3,7 +3,7 @@
 #pragma once
 #include <ceres/sized_cost_function.h>
 
-#include "oort/graph/residuals.hpp"
+#include "oort/graph/internal/residuals.hpp"
 
 /// The links of a graph as cost functions for Ceres, of blocks x, y, theta, with analytic Jacobians. Internal: needs
 /// Ceres' headers.

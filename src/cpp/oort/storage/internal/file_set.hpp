@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "oort/storage/directory.hpp"
+#include "oort/storage/internal/directory.hpp"
 
 namespace oort {
 

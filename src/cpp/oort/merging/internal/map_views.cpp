@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/merging/map_views.hpp"
+#include "oort/merging/internal/map_views.hpp"
 
 #include <algorithm>
 #include <limits>

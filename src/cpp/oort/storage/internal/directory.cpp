@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/storage/directory.hpp"
+#include "oort/storage/internal/directory.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

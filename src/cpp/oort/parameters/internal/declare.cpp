@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/parameters/declare.hpp"
+#include "oort/parameters/internal/declare.hpp"
 
 #include <algorithm>
 #include <sstream>

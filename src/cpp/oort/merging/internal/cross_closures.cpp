@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/merging/cross_closures.hpp"
+#include "oort/merging/internal/cross_closures.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -10,7 +10,7 @@
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
 #include "oort/mapper/solve_schedule.hpp"
-#include "oort/merging/append_map.hpp"
+#include "oort/merging/internal/append_map.hpp"
 
 namespace oort {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/merging/append_map.hpp"
+#include "oort/merging/internal/append_map.hpp"
 
 #include <algorithm>
 #include <cstring>

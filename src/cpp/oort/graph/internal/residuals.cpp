@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/graph/residuals.hpp"
+#include "oort/graph/internal/residuals.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>

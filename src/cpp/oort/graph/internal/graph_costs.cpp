@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/graph/graph_costs.hpp"
+#include "oort/graph/internal/graph_costs.hpp"
 
 namespace oort {
 namespace {

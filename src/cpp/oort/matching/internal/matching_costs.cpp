@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/matching/matching_costs.hpp"
+#include "oort/matching/internal/matching_costs.hpp"
 
 #include <Eigen/Core>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/storage/md5.hpp"
+#include "oort/storage/internal/md5.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/storage/file_set.hpp"
+#include "oort/storage/internal/file_set.hpp"
 
 #include <filesystem>
 
 #include "oort/geometry/errors.hpp"
-#include "oort/storage/checksum_file.hpp"
-#include "oort/storage/md5.hpp"
+#include "oort/storage/internal/checksum_file.hpp"
+#include "oort/storage/internal/md5.hpp"
 #include "oort/storage/paths.hpp"
 
 namespace oort {

@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The mapper for programs: scans and odometry in, a map and poses out."""
+
+from numpy.typing import ArrayLike
+
+from oort import _core
+from oort._core import Parameters, ScanResult
+from oort.poses import as_pose
+from oort.recording.types import LaserScan
+
+__all__ = ["Mapper"]
+
+
+class Mapper(_core.Mapper):
+    """Turns scans with odometry into a map: nodes and edges, closures, solved poses, named places. Not thread-safe.
+
+    Deterministic: the same calls give the same map. Poses are x, y [m], theta [rad]; `T_a_b` takes coordinates of b to
+    a. Nodes are sensor poses, and the first of a new map is its origin.
+    """
+
+    def __init__(self, config: Parameters | None = None, sensor_on_base: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """An empty map; ``config`` are the parameters, the defaults if not given, ``sensor_on_base`` T_base_sensor.
+
+        Raises ParameterError if the parameters contradict each other, InputError if the pose is not finite.
+        """
+        super().__init__(Parameters() if config is None else config, as_pose(sensor_on_base, "Mapper: sensor_on_base"))
+
+    def add_scan(self, scan: LaserScan, odometry: ArrayLike) -> ScanResult:
+        """Takes the next scan with ``odometry``, T_odom_base at its stamp; what became of it, with the pose in the map.
+
+        Raises InputError if the scan's limits or the pose are not finite, with nothing changed, and StateError after
+        set_map() without begin_session().
+        """
+        return self.add_ranges(*scan.readings, as_pose(odometry, "Mapper.add_scan: odometry"), scan.sweep)
