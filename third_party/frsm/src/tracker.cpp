@@ -25,8 +25,6 @@ constexpr double kEdge = 0.03;       // [rad]
 constexpr double kLeastTurn = 0.02;  // [rad]
 constexpr double kLeastShare = 0.6;
 
-constexpr double kLongestStep = 2.0;  // the constant velocity is not drawn out over more than this [s]
-
 double bearing(const Point& p) {
   return std::atan2(p.y, p.x);
 }

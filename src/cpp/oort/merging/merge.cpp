@@ -203,7 +203,7 @@ Merged merge_maps(const Map& a, const Map& b, const Parameters& parameters, cons
   const Joint joint{merged.placement.node_a, merged.first_node_b + merged.placement.node_b};
   merged.across = close_across(joined, merged.first_node_b, joint, parameters);
   Mapper mapper(parameters);
-  mapper.set_map(std::move(joined));
+  mapper.set_map(joined);
   mapper.finish();
   merged.map = mapper.map();
   merged.across_kept = count_kept(merged.map.graph, merged.first_node_b);
