@@ -9,6 +9,7 @@ What is of the extension is described by its stub: only there signatures and typ
 import __future__
 
 import importlib
+import importlib.util
 import pkgutil
 import sys
 import types
@@ -65,19 +66,27 @@ def describe_by(stub: types.ModuleType) -> None:
                 setattr(module, name, getattr(stub, value.__name__))
 
 
+def is_command(name: str) -> bool:
+    """Whether `python -m` runs a module. It is not imported: the module oort.replay would hide the function."""
+    spec = importlib.util.find_spec(f"oort.{name}")
+    text = Path(spec.origin).read_text(encoding="utf-8") if spec and spec.origin else ""
+    return '"""``python -m' in text
+
+
 def main() -> int:
     """The command line."""
     if len(sys.argv) != 2:
         print(__doc__, file=sys.stderr)
         return 2
     names = {module.name for module in pkgutil.iter_modules(oort.__path__) if not module.name.startswith("_")}
-    modules = [oort, *(importlib.import_module(f"oort.{name}") for name in sorted(names - PROGRAMS))]
-    modules = [module for module in modules if not (module.__doc__ or "").startswith("``python -m")]
+    commands = {name for name in names if is_command(name)}
+    modules = [oort, *(importlib.import_module(f"oort.{name}") for name in sorted(names - PROGRAMS - commands))]
     stub = stub_of_core()
     show_annotations_verbatim(stub)
     describe_by(stub)
     pdoc.render.configure(docformat="google", show_source=False)
-    pdoc.pdoc(*(module.__name__ for module in modules), output_directory=Path(sys.argv[1]))
+    left_out = (f"!oort.{name}" for name in sorted(commands))
+    pdoc.pdoc(*(module.__name__ for module in modules), *left_out, output_directory=Path(sys.argv[1]))
     return 0
 
 
