@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace oort {
@@ -84,7 +85,7 @@ void GlobalLane::wait_for_piece() {
 
 WorkSeconds GlobalLane::work_seconds() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return work_seconds_;
+  return busy_ ? work_seconds_ : slam_.work_seconds();
 }
 
 // A piece begins while granted work is left: by then all nodes that it may know have come.
@@ -103,7 +104,7 @@ void GlobalLane::work_one_piece(std::unique_lock<std::mutex>& lock) {
   }
   busy_ = true;
   lock.unlock();
-  Correction correction;
+  std::optional<Correction> correction;
   std::exception_ptr error;
   try {
     for (const NodeAddition& node : nodes) slam_.add(node);
@@ -112,7 +113,7 @@ void GlobalLane::work_one_piece(std::unique_lock<std::mutex>& lock) {
     error = std::current_exception();
   }
   lock.lock();
-  results_.push_back({done_, std::move(correction)});
+  if (correction) results_.push_back({done_, std::move(*correction)});
   work_seconds_ = slam_.work_seconds();
   error_ = error;
   busy_ = false;

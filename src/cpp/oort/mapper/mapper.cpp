@@ -44,7 +44,7 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, con
     const WallClock clock(work_seconds_.waiting);
     due = lane_->take_due();
   }
-  take_effect(due);
+  const bool corrected = take_effect(due);
   LocalSlam::Result local;
   {
     const WorkClock clock(work_seconds_.tracking);
@@ -53,7 +53,7 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, con
   if (local.node) add(*local.node);
   count_tracking(tracking_.update(local_.last_scan().missed));
   ScanResult told = result(local.outcome);
-  told.corrected = !due.empty();
+  told.corrected = corrected;
   std::vector<NodeAddition> nodes;
   if (local.node) nodes.push_back(std::move(local.node->addition));
   lane_->advance(std::move(nodes), work_granted(scan.time));
@@ -152,17 +152,20 @@ const ClosureLog& Mapper::closure_attempts() const {
   return lane_->slam().closure_log();
 }
 
-void Mapper::take_effect(const std::vector<Correction>& corrections) {
-  bool solved = false;
+/// Whether that changes the map.
+bool Mapper::take_effect(const std::vector<Correction>& corrections) {
+  bool solved = false, closed = false;
   for (const Correction& correction : corrections) {
     for (const Closure& closure : correction.closures) map_.add(closure);
     if (correction.solution) map_.apply(*correction.solution);
     solved = solved || correction.solution.has_value();
+    closed = closed || !correction.closures.empty();
     global_counts_ = correction.counts;
   }
   if (solved && map_.node_count() > 0) {
     tracking_.look_for_tie(map().graph, map_.chains().segment_begin(map_.node_count() - 1));
   }
+  return solved || closed;
 }
 
 void Mapper::add(const ChainNode& node) {

@@ -100,7 +100,7 @@ class Mapper {
   const ClosureLog& closure_attempts() const;
 
  private:
-  void take_effect(const std::vector<Correction>& corrections);
+  bool take_effect(const std::vector<Correction>& corrections);
   void add(const ChainNode& node);
   void count_tracking(TrackingState state);
   std::uint64_t work_granted(double time);
