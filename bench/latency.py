@@ -4,8 +4,8 @@
 
     .venv/bin/python bench/latency.py RECORDING...
 
-Milliseconds are CPU time of the thread that takes the scans: other work on the machine does not count, nor what it waits
-for the global lane where a recording is replayed faster than it was made.
+Milliseconds are CPU time of the thread that takes the scans: other work on the machine does not count, nor what it
+waits for the global lane where a recording is replayed faster than it was made.
 """
 
 import argparse
