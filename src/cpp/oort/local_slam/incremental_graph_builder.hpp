@@ -39,7 +39,7 @@ struct LinkParameters {
 LinkParameters link_parameters(const IncrementalGraphBuilderParameters& parameters);
 
 /// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
-/// (docs/architecture.md, the way of a scan).
+/// (docs/architecture.md, the ten steps of a scan).
 class IncrementalGraphBuilder {
  public:
   explicit IncrementalGraphBuilder(const Parameters& parameters);
