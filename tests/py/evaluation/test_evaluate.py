@@ -11,7 +11,7 @@ import pytest
 
 from oort.cli.evaluate import main
 from oort.errors import InputError
-from oort.evaluation.trajectories import evaluate_ate, evaluate_relations
+from oort.evaluation.trajectories import evaluate_ate, evaluate_relations, relation_errors
 from oort.export import Trajectory, read_tum, write_tum
 from oort.poses import compose
 from oort.recording import open_recording
@@ -161,3 +161,12 @@ def test_raw_odometry_of_real_logs(
     assert (result.n, result.missing) == (n, 0)
     assert result.translation_mean == pytest.approx(translation, abs=0.01)
     assert result.rotation_mean == pytest.approx(rotation, abs=0.5)
+
+
+def test_relations_with_rounded_times_find_their_poses(tmp_path: Path) -> None:
+    stamps = [10.00004, 11.00006, 12.00004]
+    lines = "".join(f"{stamp:.5f} {k}.0 0 0 0 0 0 1\n" for k, stamp in enumerate(stamps))
+    (tmp_path / "trajectory.tum").write_text(lines)
+    (tmp_path / "relations").write_text("10.0001 11.0001 1 0 0 0 0 0\n11.0 12.0 1 0 0 0 0 0\n")
+    errors = relation_errors(read_tum(tmp_path / "trajectory.tum"), tmp_path / "relations")
+    assert np.abs(errors).max() < 1e-9

@@ -15,6 +15,7 @@ from oort.export.files import floats, read_text
 from oort.export.tum import Trajectory
 from oort.poses import between, compose, wrap_angle
 
+_ROUNDED = 1.001e-4  # [s] between a time of a relation that was rounded and the pose's
 _MAX_MISSING = 0.05  # share of relations or poses without a counterpart above which the result would mislead
 _MAX_GAP = 0.2  # [s]; the truth is interpolated between stamps at most this far apart
 
@@ -101,8 +102,7 @@ def relation_errors(
         relations = relations[np.abs(relations[:, 1] - relations[:, 0]) < max_seconds]
     if not len(relations):
         raise InputError(f"{path} holds no relation{'' if max_seconds is None else f' under {max_seconds} s'}")
-    index = _index(trajectory)
-    ends = np.array([[index.get(round(t, 6), -1) for t in pair] for pair in relations[:, :2].tolist()], dtype=np.int64)
+    ends = _places(trajectory, relations[:, :2])
     found: NDArray[np.bool_] = np.all(ends >= 0, axis=1)
     _check_missing(int(np.count_nonzero(~found)), len(found), f"relations of {path}")
     errors = np.full((len(relations), 3), np.nan)
@@ -125,12 +125,28 @@ def _read_relations(path: Path) -> NDArray[np.float64]:
     return np.array(rows, dtype=np.float64).reshape(-1, 8)
 
 
-def _index(trajectory: Trajectory) -> dict[float, int]:
-    """From time, rounded to 6 decimals, to the pose's place."""
+def _places(trajectory: Trajectory, times: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Which pose is that of each time, in the shape of ``times``; -1 for none.
+
+    A time is one to 6 decimals; of a file whose times were rounded, one within 1e-4 s of it.
+    """
     index = {round(time, 6): i for i, time in enumerate(trajectory.times.tolist())}
     if len(index) < len(trajectory.stamps):
         raise InputError("two poses of the trajectory have the same time to 6 decimals: a relation could mean either")
-    return index
+    order = np.argsort(trajectory.times, kind="stable")
+    known = trajectory.times[order]
+    after = np.clip(np.searchsorted(known, times), 1, max(len(known) - 1, 1))
+    places = np.full(times.shape, -1, dtype=np.int64)
+    for place, time in np.ndenumerate(times):
+        exact = index.get(round(float(time), 6))
+        if exact is not None:
+            places[place] = exact
+        elif len(known) > 1:
+            k = int(after[place])
+            nearest = k if abs(known[k] - time) < abs(known[k - 1] - time) else k - 1
+            if abs(known[nearest] - time) <= _ROUNDED:
+                places[place] = order[nearest]
+    return places
 
 
 def evaluate_ate(trajectory: Trajectory, truth: Trajectory) -> AteResult:
