@@ -6,16 +6,14 @@
 #include <cmath>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/geometry/tuning.hpp"
 
 namespace oort {
 namespace {
 
-// A home robot drives at 0.5 m/s and turns at 3 rad/s, and a scan takes a fifth of a second at most.
-constexpr double kMostWay = 1.0;   // [m]
-constexpr double kMostTurn = 1.0;  // [rad]
-
 bool is_too_much(const Pose2& motion) {
-  return motion.translation().norm() > kMostWay || std::abs(motion.theta) > kMostTurn;
+  return motion.translation().norm() > GeometryTuning::kMaxSweepTranslation ||
+         std::abs(motion.theta) > GeometryTuning::kMaxSweepRotation;
 }
 
 bool is_nothing(const Pose2& motion) {

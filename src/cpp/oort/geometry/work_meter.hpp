@@ -9,6 +9,9 @@ namespace oort {
 /// never from a clock, so that the same work counts the same everywhere. What is dear is charged before it is done.
 class WorkMeter {
  public:
+  /// What a laptop's core does.
+  static constexpr double kUnitsPerSecond = 1e6;
+
   virtual ~WorkMeter() = default;
   virtual void charge(std::uint64_t units) = 0;
 };

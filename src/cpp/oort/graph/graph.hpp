@@ -49,9 +49,6 @@ struct SwitchableEdge {
   bool is_on() const { return switch_value >= 0.5; }
 };
 
-/// A link whose chi^2 is at most this agrees with the poses: 95 % of a chi-square of three degrees of freedom.
-constexpr double kAgreement = 7.815;
-
 struct Graph {
   std::vector<Node> nodes;
   std::vector<Edge> edges;

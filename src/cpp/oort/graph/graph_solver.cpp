@@ -6,27 +6,9 @@
 #include <utility>
 
 #include "oort/graph/internal/residuals.hpp"
+#include "oort/graph/tuning.hpp"
 
 namespace oort {
-namespace {
-
-// Damping relative to the diagonal. Graphs start near their optimum, where Gauss-Newton steps are right, so it starts
-// weak. What no link holds still needs a diagonal.
-constexpr double kFirstDamping = 1e-6;
-constexpr double kLeastDamping = 1e-10;
-constexpr double kMostDamping = 1e6;
-constexpr double kLeastDiagonal = 1e-6;
-
-// A large graph is done when the promise is small beside its cost, too.
-constexpr double kRelativeTolerance = 1e-7;
-
-// What solving costs in units of work, measured on graphs of 1,000 to 12,000 nodes.
-constexpr double kWorkPerPattern = 0.4;   // for each link and variable, of ordering and finding the pattern
-constexpr double kWorkPerLink = 0.3;      // of linearising and of the cost
-constexpr double kWorkPerBlock = 0.02;    // of the factor, in both substitutions
-constexpr double kWorkPerProduct = 0.01;  // of two blocks, in the factorisation
-
-}  // namespace
 
 GraphSolver::GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<Link> links, double scale)
     : poses_(std::move(poses)), variables_(std::move(variables)), links_(std::move(links)), scale_(scale) {
@@ -37,7 +19,7 @@ GraphSolver::GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, s
 bool GraphSolver::use(const std::vector<bool>& on) {
   if (on == on_) return false;
   on_ = on;
-  damping_ = kFirstDamping;
+  damping_ = GraphTuning::kInitialDamping;
   active_.clear();
   pair_of_.clear();
   std::vector<BlockPair> pairs;
@@ -49,36 +31,40 @@ bool GraphSolver::use(const std::vector<bool>& on) {
     pair_of_.push_back(pairs.size());
     if (i >= 0 && j >= 0) pairs.push_back({i, j});
   }
-  charge(meter_, kWorkPerPattern * static_cast<double>(pairs.size() + static_cast<std::size_t>(variable_count_)));
+  charge(meter_,
+         GraphTuning::kWorkPerPattern * static_cast<double>(pairs.size() + static_cast<std::size_t>(variable_count_)));
   cholesky_.analyze(static_cast<std::size_t>(variable_count_), pairs);
   return true;
 }
 
 GraphSolver::Progress GraphSolver::step(double tolerance) {
-  charge(meter_, kWorkPerLink * static_cast<double>(active_.size()));
+  charge(meter_, GraphTuning::kWorkPerEdge * static_cast<double>(active_.size()));
   linearize();
   std::vector<double> switches;
   for (const std::size_t k : active_) switches.push_back(links_[k].s);
   const double before = cost(poses_, switches);
   std::vector<Eigen::Vector3d> damping(descent_.size());
-  for (; damping_ <= kMostDamping; damping_ = 10.0 * std::max(damping_, kFirstDamping)) {
-    for (int k = 0; k < variable_count_; ++k) damping[k] = damping_ * cholesky_.diagonal(k).cwiseMax(kLeastDiagonal);
-    charge(meter_, kWorkPerBlock * static_cast<double>(cholesky_.fill()) +
-                       kWorkPerProduct * static_cast<double>(cholesky_.products()));
+  for (; damping_ <= GraphTuning::kMaxDamping;
+       damping_ = GraphTuning::kDampingGrowth * std::max(damping_, GraphTuning::kInitialDamping)) {
+    for (int k = 0; k < variable_count_; ++k) {
+      damping[k] = damping_ * cholesky_.diagonal(k).cwiseMax(GraphTuning::kMinDiagonal);
+    }
+    charge(meter_, GraphTuning::kWorkPerBlock * static_cast<double>(cholesky_.fill()) +
+                       GraphTuning::kWorkPerProduct * static_cast<double>(cholesky_.products()));
     if (!cholesky_.factorize(damping)) continue;
     delta_ = descent_;
     cholesky_.solve(delta_);
     double promised = 0.0;  // by which the cost should fall: half of what the step and the gradient have in common
     for (std::size_t k = 0; k < delta_.size(); ++k) promised += 0.5 * delta_[k].dot(descent_[k]);
     for (const Eliminated& e : eliminated_) promised += 0.5 * e.gradient * e.gradient / e.curvature;
-    const bool small = promised <= tolerance + kRelativeTolerance * before;
+    const bool small = promised <= tolerance + GraphTuning::kRelativeTolerance * before;
 
     std::vector<Pose2> poses = moved_poses();
     switches = moved_switches();
     if (cost(poses, switches) <= before) {
       poses_ = std::move(poses);
       for (std::size_t a = 0; a < active_.size(); ++a) links_[active_[a]].s = switches[a];
-      damping_ = std::max(0.3 * damping_, kLeastDamping);
+      damping_ = std::max(GraphTuning::kDampingDecay * damping_, GraphTuning::kMinDamping);
       return small ? Progress::kConverged : Progress::kMoved;
     }
     if (small) return Progress::kConverged;

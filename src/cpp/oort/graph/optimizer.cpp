@@ -13,15 +13,13 @@
 #include "oort/graph/internal/residuals.hpp"
 #include "oort/graph/landmarks.hpp"
 #include "oort/graph/search.hpp"
+#include "oort/graph/tuning.hpp"
 
 namespace oort {
 namespace {
 
 // Squared errors beyond this overflow once products of them are summed.
 constexpr double kLargestSquaredError = 1e100;
-
-// Units of work for each link and iteration of Ceres.
-constexpr double kWorkPerHuberLink = 3.0;
 
 /// The edge as a link. InputError, naming the edge, if its covariance has no inverse or its error is too large to
 /// compute with.
@@ -105,7 +103,8 @@ void check_options(const OptimizerOptions& options) {
 OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
   if (options.robust_kernel == RobustKernel::kHuber) {
     Landmarks none;
-    charge(options.meter, kWorkPerHuberLink * static_cast<double>(graph.edges.size() + graph.switchable_edges.size()) *
+    charge(options.meter, GraphTuning::kWorkPerHuberEdge *
+                              static_cast<double>(graph.edges.size() + graph.switchable_edges.size()) *
                               options.max_iterations);
     return optimize_with_landmarks(graph, {}, none, options);
   }

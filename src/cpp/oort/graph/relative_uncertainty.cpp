@@ -6,13 +6,14 @@
 #include <tuple>
 #include <utility>
 
+#include "oort/graph/tuning.hpp"
+
 namespace oort {
 namespace {
 
-constexpr double kLever = 1.0;  // [m]; a metre away, an error of heading counts like one of position
-
 double size_of(const Eigen::Matrix3d& covariance) {
-  return covariance(0, 0) + covariance(1, 1) + kLever * kLever * covariance(2, 2);
+  return covariance(0, 0) + covariance(1, 1) +
+         GraphTuning::kHeadingLever * GraphTuning::kHeadingLever * covariance(2, 2);
 }
 
 /// Covariance of T_from_b, given that of T_from_a and of T_a_b, all along the axes of the map: an error of heading at a

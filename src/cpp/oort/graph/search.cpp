@@ -10,36 +10,10 @@
 #include <vector>
 
 #include "oort/graph/graph.hpp"
+#include "oort/graph/tuning.hpp"
 
 namespace oort {
 namespace {
-
-// A link that was on and is now farther off than this (99.9 %) says that the solution may be another one altogether.
-constexpr double kSurprise = 16.266;
-
-// While the solution is searched for, a link whose best switch is below this is left out: it hardly pulls, and false
-// links, which join distant nodes, make each step dear.
-constexpr double kOff = 0.01;
-
-// How many steps are made before links that are off are left out; then before and between looking again which those
-// are.
-constexpr int kFirstSteps = 2;
-constexpr int kSearchRounds = 3;
-constexpr int kSearchSteps = 3;
-
-// Blocks in the factor from which on a step is dear: then one start must do.
-constexpr std::size_t kDear = 100'000;
-
-// From this round of deciding on, links only leave, so that deciding ends.
-constexpr int kRoundsBothWays = 10;
-
-// Solving ends with a step that lowers the cost by less: it moves nothing by as much as a thousandth of its standard
-// deviation, or, while the solution is searched for, a fifth.
-constexpr double kTolerance = 1e-6;
-constexpr double kSearchTolerance = 1e-2;
-
-// Poses at which the links that are always believed cost less are those of the chain.
-constexpr double kChained = 1e-3;
 
 /// The part of the cost of the links that are always believed.
 double believed_cost(const GraphSolver& solver) {
@@ -92,7 +66,7 @@ void Search::run(bool decides) {
   const bool surprised = is_surprised();
   if (surprised) switch_all_on();
   if (!decides) {
-    solve_switches(0.0, kTolerance, max_iterations_, max_iterations_);
+    solve_switches(0.0, GraphTuning::kTolerance, max_iterations_, max_iterations_);
     return;
   }
   if (surprised) find_best_start();
@@ -104,13 +78,13 @@ bool Search::is_surprised() const {
   return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
     if (!link.switchable || link.s <= agreeing_switch(link)) return false;
     const double known = is_firm(link) ? solver_.squared_error_at(link, link.s) : 0.0;
-    return solver_.squared_error(link) > kSurprise + known;
+    return solver_.squared_error(link) > GraphTuning::kLargeInnovation + known;
   });
 }
 
 /// The switch of a link that just agrees.
 double Search::agreeing_switch(const Link& link) const {
-  return solver_.best_switch(link, kAgreement * link.firmness);
+  return solver_.best_switch(link, GraphTuning::kAgreement * link.firmness);
 }
 
 void Search::switch_all_on() {
@@ -127,7 +101,7 @@ void Search::find_best_start() {
     solver_.set_poses(std::move(start));
     switch_all_on();
     if (believes_firm) believe_firm(true);
-    solve_switches(least_switch, kSearchTolerance, kSearchSteps, kSearchRounds);
+    solve_switches(least_switch, GraphTuning::kSearchTolerance, GraphTuning::kSearchSteps, GraphTuning::kSearchRounds);
     if (believes_firm) believe_firm(false);
     if (const double reached = robust_cost(solver_); reached < least) {
       least = reached;
@@ -135,12 +109,12 @@ void Search::find_best_start() {
     }
   };
   std::vector<Pose2> chain = chained_poses(solver_);
-  const bool is_chain = believed_cost(solver_) < kChained;
+  const bool is_chain = believed_cost(solver_) < GraphTuning::kNoCost;
   try_from(best, 0.0);
   if (!is_chain && !is_dear_) try_from(std::move(chain), 0.0);
   const auto& links = solver_.links();
-  if (std::any_of(links.begin(), links.end(), is_firm)) try_from(best, kOff, true);
-  try_from(best, kOff);
+  if (std::any_of(links.begin(), links.end(), is_firm)) try_from(best, GraphTuning::kOffWhileSearching, true);
+  try_from(best, GraphTuning::kOffWhileSearching);
   solver_.set_poses(std::move(best));
 }
 
@@ -158,10 +132,10 @@ void Search::solve_switches(double least_switch, double tolerance, int most_step
     on.push_back(!link.switchable || solver_.best_switch(link, solver_.squared_error(link)) >= least_switch);
   }
   solver_.use(on);
-  is_dear_ = solver_.fill() >= kDear;
-  converge(tolerance, kFirstSteps);
+  is_dear_ = solver_.fill() >= GraphTuning::kExpensiveBlocks;
+  converge(tolerance, GraphTuning::kFirstSteps);
   const auto is_not_off = [this](const Link& link, int) {
-    return solver_.best_switch(link, solver_.squared_error(link)) >= kOff;
+    return solver_.best_switch(link, solver_.squared_error(link)) >= GraphTuning::kOffWhileSearching;
   };
   settle(is_not_off, tolerance, most_steps, most_rounds);
 }
@@ -170,10 +144,12 @@ void Search::solve_switches(double least_switch, double tolerance, int most_step
 void Search::decide() {
   const auto agrees = [this](const Link& link, int round) {
     const double doubt = strain(solver_, link);
-    if (round == 0 && link.s > agreeing_switch(link)) return doubt <= kSurprise;  // may pull before it is judged
-    return doubt <= kAgreement && (round < kRoundsBothWays || link.on);
+    if (round == 0 && link.s > agreeing_switch(link)) {
+      return doubt <= GraphTuning::kLargeInnovation;  // may pull before it is judged
+    }
+    return doubt <= GraphTuning::kAgreement && (round < GraphTuning::kRoundsBothWays || link.on);
   };
-  settle(agrees, kTolerance, max_iterations_, max_iterations_);
+  settle(agrees, GraphTuning::kTolerance, max_iterations_, max_iterations_);
 }
 
 /// Solves with the links that the rule chooses, again and again until they stay the same.

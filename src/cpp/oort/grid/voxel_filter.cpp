@@ -9,12 +9,10 @@
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/grid/tuning.hpp"
 
 namespace oort {
 namespace {
-
-constexpr double kSmallestShare = 0.01;  // of max_length: smaller squares thin nothing that a sensor tells apart
-constexpr double kPrecision = 0.1;       // of the length that is looked for
 
 using Voxel = std::pair<double, double>;  // whole numbers, which doubles hold without overflow
 
@@ -53,10 +51,10 @@ Points adaptive_voxel_filter(const Points& points, const AdaptiveVoxelFilterPara
   while (kept.size() < enough) {
     too_long = length;
     length /= 2.0;
-    if (length < kSmallestShare * parameters.max_length) return near;
+    if (length < GridTuning::kMinVoxelShare * parameters.max_length) return near;
     kept = voxel_filter(near, length);
   }
-  while (too_long - length > kPrecision * length) {
+  while (too_long - length > GridTuning::kVoxelPrecision * length) {
     const double middle = 0.5 * (length + too_long);
     Points fewer = voxel_filter(near, middle);
     if (fewer.size() >= enough) {

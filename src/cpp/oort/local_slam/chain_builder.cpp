@@ -4,39 +4,20 @@
 
 #include <memory>
 
+#include "oort/local_slam/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
 namespace {
 
-// Variance of x, y and theta of a scan that nothing was matched with: FRSM's value for its first scan.
-constexpr double kUnmatchedVariance = 0.1;
-
-// So many nodes in a row that only odometry places, and the scan matcher starts afresh.
-constexpr int kMaxRejections = 5;
-
-// When odometry and a match contradict each other: with so many hits the match is the better guess. The least variances
-// of the edge that stands for both; edges as wide as that begin a segment wherever they are read (Chains).
-constexpr double kTellingHits = 0.8;
-constexpr double kContradictedVariance = 0.26;       // [m^2], for each of x and y
-constexpr double kContradictedVarianceTheta = 0.06;  // [rad^2]
-
-// A scan of which fewer hit is poorly matched; so many in a row, and the local map is not of this place. The scans of a
-// good match hit by nine tenths and more; matches go on by chance after a robot was put down elsewhere.
-constexpr double kPoorHits = 0.6;
-
-// How far odometry may be off, beyond its model, over a way on which it was doubted; still an edge that submaps may be
-// drawn over (Chains).
-constexpr double kDoubted = 0.3;       // [m]
-constexpr double kDoubtedTheta = 0.3;  // [rad]
-constexpr int kMaxPoor = 8;
-
 Eigen::Matrix3d unmatched_covariance(double scale) {
-  return kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
+  return LocalSlamTuning::kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
 }
 
 Eigen::Matrix3d least_contradiction() {
-  return Eigen::Vector3d(kContradictedVariance, kContradictedVariance, kContradictedVarianceTheta).asDiagonal();
+  return Eigen::Vector3d(LocalSlamTuning::kContradictedVariance, LocalSlamTuning::kContradictedVariance,
+                         LocalSlamTuning::kContradictedVarianceTheta)
+      .asDiagonal();
 }
 
 }  // namespace
@@ -100,7 +81,7 @@ void ChainBuilder::track(LocalScan& scan, const MotionHypotheses& hypotheses, co
 void ChainBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_odom_base_before,
                                    const Pose2& T_base_sensor) {
   Pose2 moved = hypotheses.T_before_after[scan.tracked.hypothesis];
-  if (!scan.missed && !scan.tracked.degenerate && scan.tracked.hit_fraction >= kTellingHits) {
+  if (!scan.missed && !scan.tracked.degenerate && scan.tracked.hit_fraction >= LocalSlamTuning::kTellingInliers) {
     const Pose2 T_odom_sensor = T_odom_sensor_tracked_ * between(T_local_sensor_tracked_, scan.tracked.T_local_sensor);
     const Pose2 matched = between(T_odom_base_before, T_odom_sensor * inverse(T_base_sensor));
     scan.odometry_is_wrong = !hypotheses.holds(matched);
@@ -109,7 +90,10 @@ void ChainBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypo
   scan.T_odom_base = T_odom_base_before * moved;
   scan.T_odom_sensor = scan.T_odom_base * T_base_sensor;
   if (!scan.odometry_is_wrong) return;
-  doubt_since_newest_ = Eigen::Vector3d(kDoubted, kDoubted, kDoubtedTheta).cwiseAbs2().asDiagonal();
+  doubt_since_newest_ = Eigen::Vector3d(LocalSlamTuning::kDoubtedEdgeSigma, LocalSlamTuning::kDoubtedEdgeSigma,
+                                        LocalSlamTuning::kDoubtedEdgeSigmaTheta)
+                            .cwiseAbs2()
+                            .asDiagonal();
   doubt_since_anchor_ = doubt_since_newest_;
 }
 
@@ -146,9 +130,10 @@ void ChainBuilder::begin_local_map(LocalScan& scan, const Pose2& T_local_sensor)
 }
 
 void ChainBuilder::restart_if_poor(LocalScan& scan) {
-  const bool poor = scan.tracked.usable() && scan.tracked.hit_fraction < kPoorHits && matcher_.knows_odometry();
+  const bool poor =
+      scan.tracked.usable() && scan.tracked.hit_fraction < LocalSlamTuning::kPoorInliers && matcher_.knows_odometry();
   poor_in_a_row_ = poor ? poor_in_a_row_ + 1 : 0;
-  if (poor_in_a_row_ < kMaxPoor) return;
+  if (poor_in_a_row_ < LocalSlamTuning::kMaxPoorScans) return;
   poor_in_a_row_ = 0;
   begin_local_map(scan, scan.tracked.T_local_sensor);
   scan.tracked.restarted = true;
@@ -158,7 +143,7 @@ void ChainBuilder::restart_if_poor(LocalScan& scan) {
 
 void ChainBuilder::restart_if_rejected(const LocalScan& scan, bool matched) {
   rejections_in_a_row_ = matched ? 0 : rejections_in_a_row_ + 1;
-  if (rejections_in_a_row_ < kMaxRejections) return;
+  if (rejections_in_a_row_ < LocalSlamTuning::kMaxRejectedNodes) return;
   matcher_.begin(scan.tracked.T_local_sensor);
   local_map_ = LocalMap::kFresh;
 }
@@ -235,7 +220,7 @@ ChainNode ChainBuilder::contradict(LocalScan& scan, const Pose2& T_newest_node, 
     return from_newest(anchor_.T_local_sensor * T_anchor_node);
   };
   const Pose2 apart = between(T_newest_node, from_newest_node(match.T_anchor_node));
-  const bool is_telling = scan.tracked.hit_fraction >= kTellingHits;
+  const bool is_telling = scan.tracked.hit_fraction >= LocalSlamTuning::kTellingInliers;
   const Pose2 chosen = is_telling ? from_newest_node(match.T_anchor_node_weighed) : T_newest_node;
   const double distance2 = apart.translation().squaredNorm();
   const Eigen::Vector3d far_apart(distance2, distance2, apart.theta * apart.theta);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "oort/local_slam/tuning.hpp"
 #include "oort/matching/ceres_matcher.hpp"
 #include "oort/matching/correlative_matcher.hpp"
 #include "oort/matching/frsm_adapter.hpp"
@@ -19,12 +20,6 @@ namespace {
 // The grids, from coarse to fine: those of stages that are not wanted are not kept.
 constexpr std::size_t kSearchGrid = 0;
 constexpr std::size_t kRefinementGrid = 1;
-
-// So many scans in a row that fit too little, and a fresh local map starts.
-constexpr int kMaxRejectedScans = 5;
-
-// Another motion than odometry's must bring this many more hits to be believed.
-constexpr double kWorthwhileHits = 0.02;
 
 std::vector<ProbabilityGridParameters> grids_of(const CartographerMatcherParameters& p) {
   std::vector<ProbabilityGridParameters> grids{p};
@@ -72,7 +67,7 @@ TrackedScan GridScanTracker::track(const frsm::Points& points, double /*time*/, 
   TrackedScan tracked = match(near, expected);
   for (std::size_t k = 0; k < alternatives.size(); ++k) {
     TrackedScan other = match(near, pose_ * alternatives[k].T_before_after);
-    if (other.hit_fraction <= tracked.hit_fraction + kWorthwhileHits) continue;
+    if (other.hit_fraction <= tracked.hit_fraction + LocalSlamTuning::kAlternativeGain) continue;
     expected = pose_ * alternatives[k].T_before_after;
     tracked = other;
     tracked.hypothesis = k + 1;
@@ -81,7 +76,7 @@ TrackedScan GridScanTracker::track(const frsm::Points& points, double /*time*/, 
     rejected_ = 0;
     pose_ = tracked.T_local_sensor;
     if (is_key_scan(pose_)) pending_ = Pending{near, pose_};
-  } else if (++rejected_ >= kMaxRejectedScans) {
+  } else if (++rejected_ >= LocalSlamTuning::kMaxRejectedScans) {
     reset(expected);
     tracked = begin(near, expected);
     tracked.restarted = true;

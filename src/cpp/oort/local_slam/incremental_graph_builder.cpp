@@ -7,14 +7,10 @@
 #include <cmath>
 
 #include "oort/local_slam/match_gates.hpp"
+#include "oort/local_slam/tuning.hpp"
 
 namespace oort {
 namespace {
-
-// Surfaces in the local map are off by this much from one another [m], which turns a scan that sees little of them. Of
-// 60 degree views in simulated homes, links err by 0.014 rad where the returns lie within 0.5 m of their middle.
-constexpr double kSurfaceError = 0.005;
-constexpr double kLeastExtent = 0.1;  // [m]
 
 double extent_of(const frsm::Points& points) {
   double x = 0.0, y = 0.0, squares = 0.0;
@@ -27,27 +23,16 @@ double extent_of(const frsm::Points& points) {
   return std::sqrt(std::max(squares / n - (x * x + y * y) / (n * n), 0.0));
 }
 
-// A match tells how good odometry is if so many of its returns hit.
-constexpr double kTellingHits = 0.8;
-
-// Odometry and match contradict each other beyond this squared distance: once in 10^5 times by chance (chi-square of 3
-// degrees of freedom).
-constexpr double kContradiction = 25.9;
-
-// How much less certain odometry then is [m and rad]: far less than what a match sees, more than what it does not.
-constexpr double kDoubt = 0.25;
-
 /// Next to nothing is known, yet a link of it is one that submaps may be drawn over (Chains).
 Eigen::Matrix3d diffuse_covariance() {
-  return Eigen::Vector3d(0.2, 0.2, 0.2).asDiagonal();  // 0.45 m and 0.45 rad
+  return LocalSlamTuning::kDiffuseVariance * Eigen::Matrix3d::Identity();
 }
 
-// Of a motion that is one of several that may be true: how far each of them may be off.
-constexpr double kDoubtedMotion = 0.1;       // [m]
-constexpr double kDoubtedMotionTheta = 0.1;  // [rad]
-
 Eigen::Matrix3d doubted_motion() {
-  return Eigen::Vector3d(kDoubtedMotion, kDoubtedMotion, kDoubtedMotionTheta).cwiseAbs2().asDiagonal();
+  return Eigen::Vector3d(LocalSlamTuning::kDoubtedSigma, LocalSlamTuning::kDoubtedSigma,
+                         LocalSlamTuning::kDoubtedSigmaTheta)
+      .cwiseAbs2()
+      .asDiagonal();
 }
 
 OdometryModel odometry_model(const OdometryNoiseParameters& p) {
@@ -108,7 +93,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
   link.rejection = match_rejection(parameters_, node, T_local_anchor, T_anchor_node_odometry);
   const bool comparable = motion_model_ && link_.odometry_is_prior;
-  if (comparable && node.hit_fraction >= kTellingHits && is_too_far(link.rejection)) {
+  if (comparable && node.hit_fraction >= LocalSlamTuning::kTellingInliers && is_too_far(link.rejection)) {
     link.contradicts_odometry = true;
     link.T_anchor_node_weighed = T_anchor_node_odometry;
   }
@@ -116,7 +101,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
                                      link.T_anchor_node.translation().norm());
   if (motion_model_ && link.rejection == Rejection::kNone) {
     if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, doubt, link);
-    const bool telling = doubt.isZero(0.0) && !node.degenerate && node.hit_fraction >= kTellingHits;
+    const bool telling = doubt.isZero(0.0) && !node.degenerate && node.hit_fraction >= LocalSlamTuning::kTellingInliers;
     if (telling) odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
   }
   return link;
@@ -151,7 +136,7 @@ Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& nod
     // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
     covariance = (match_information(node, heading) + others.inverse()).inverse();
     const double heading_error = link_.heading_error_per_meter * distance;
-    const double turn = kSurfaceError / std::max(node.extent, kLeastExtent);
+    const double turn = LocalSlamTuning::kSurfaceError / std::max(node.extent, LocalSlamTuning::kMinExtent);
     covariance(2, 2) += heading_error * heading_error + turn * turn;
   } else {
     // As the original did: the matcher's own covariance, scaled, without its terms between position and heading.
@@ -171,9 +156,11 @@ void IncrementalGraphBuilder::compare(const TrackedScan& node, double heading, c
                                    wrap_angle(link.T_anchor_node.theta - driven.theta));
   // A slip is none of what is learned.
   const Eigen::Matrix3d odometry = odometry_model_.model().covariance(driven) + doubt;
-  link.contradicts_odometry = difference.dot(odometry.inverse() * difference) > kContradiction;
+  link.contradicts_odometry = difference.dot(odometry.inverse() * difference) > LocalSlamTuning::kContradiction;
   const Eigen::Matrix3d match = match_information(node, heading);
-  const Eigen::Matrix3d doubted = kDoubt * kDoubt * Eigen::Matrix3d::Identity() + odometry;
+  const Eigen::Matrix3d doubted =
+      LocalSlamTuning::kContradictedSigma * LocalSlamTuning::kContradictedSigma * Eigen::Matrix3d::Identity() +
+      odometry;
   const Eigen::Vector3d towards_match = (match + doubted.inverse()).inverse() * match * difference;
   link.T_anchor_node_weighed = {driven.x + towards_match.x(), driven.y + towards_match.y(),
                                 wrap_angle(driven.theta + towards_match.z())};

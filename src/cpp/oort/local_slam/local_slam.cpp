@@ -6,13 +6,11 @@
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/local_slam/tuning.hpp"
 #include "oort/map/map_check.hpp"
 
 namespace oort {
 namespace {
-
-// A node is made when scans tell of so many times the motion that makes one due, of which odometry tells less.
-constexpr double kUnnoticed = 1.5;
 
 void check_odometry(const LaserScan& scan, const Pose2& T_odom_base) {
   if (!is_finite(T_odom_base) || !std::isfinite(scan.time)) {
@@ -122,8 +120,8 @@ bool LocalSlam::is_due(const LocalScan& scan) const {
 bool LocalSlam::has_moved_unnoticed(const LocalScan& scan) const {
   if (!chain_.is_going_on() || !scan.tracked.usable() || !chain_.matcher().knows_odometry()) return false;
   const Pose2 moved = T_base_sensor_ * chain_.from_newest(scan.tracked.T_local_sensor) * inverse(T_base_sensor_);
-  return moved.translation().norm() >= kUnnoticed * parameters_.linear_update ||
-         std::abs(moved.theta) >= kUnnoticed * parameters_.angular_update;
+  return moved.translation().norm() >= LocalSlamTuning::kUnnoticedMotion * parameters_.linear_update ||
+         std::abs(moved.theta) >= LocalSlamTuning::kUnnoticedMotion * parameters_.angular_update;
 }
 
 }  // namespace oort

@@ -4,12 +4,9 @@
 
 #include <algorithm>
 
+#include "oort/local_slam/tuning.hpp"
+
 namespace oort {
-namespace {
-
-constexpr int kLostScans = 20;  // two seconds of a usual sensor
-
-}  // namespace
 
 void TrackingMonitor::hang_loosely(std::uint64_t first_node, bool is_guess) {
   if (!is_loose_) loose_begin_ = first_node;
@@ -27,7 +24,7 @@ void TrackingMonitor::look_for_tie(const Graph& graph, std::uint64_t chain_begin
 
 TrackingState TrackingMonitor::update(bool missed) {
   missed_in_a_row_ = missed ? missed_in_a_row_ + 1 : 0;
-  if (missed_in_a_row_ >= kLostScans || (is_loose_ && is_guess_)) return TrackingState::kLost;
+  if (missed_in_a_row_ >= LocalSlamTuning::kLostScans || (is_loose_ && is_guess_)) return TrackingState::kLost;
   return is_loose_ || missed ? TrackingState::kUncertain : TrackingState::kTracking;
 }
 

@@ -6,21 +6,18 @@
 #include <cmath>
 
 #include "oort/grid/range_data.hpp"
+#include "oort/localization/tuning.hpp"
 #include "oort/loop_closure/facing.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
 namespace {
 
-constexpr double kWall = 0.6;  // probability above which a cell is taken for a wall: hit more often than passed
-constexpr double kFree = 0.4;  // and below which for free floor
-constexpr int kSectors = 8;    // of facing
-
 OutputGridParameters grid_parameters() {
   OutputGridParameters p{};
-  p.resolution = 0.05;
-  p.hit_probability = 0.65;
-  p.miss_probability = 0.45;
+  p.resolution = LocalizationTuning::kCell;
+  p.hit_probability = LocalizationTuning::kHitProbability;
+  p.miss_probability = LocalizationTuning::kMissProbability;
   p.insert_free_space = true;
   p.clear_infs = false;
   p.inf_clear_dist = 0.0;
@@ -41,13 +38,16 @@ GridLimits limits_of(const Map& map) {
 
 int sector_of(const Eigen::Vector2d& normal) {
   const double turns = std::atan2(normal.y(), normal.x()) / (2.0 * M_PI);
-  return static_cast<int>(std::lround(kSectors * (turns + 1.0))) % kSectors;
+  return static_cast<int>(std::lround(LocalizationTuning::kNormalSectors * (turns + 1.0))) %
+         LocalizationTuning::kNormalSectors;
 }
 
 // The sectors within an eighth of a turn of one.
 std::uint8_t around(int sector) {
   unsigned bits = 0;
-  for (const int step : {kSectors - 1, 0, 1}) bits |= 1U << ((sector + step) % kSectors);
+  for (const int step : {LocalizationTuning::kNormalSectors - 1, 0, 1}) {
+    bits |= 1U << ((sector + step) % LocalizationTuning::kNormalSectors);
+  }
   return static_cast<std::uint8_t>(bits);
 }
 
@@ -83,11 +83,11 @@ double KnownSpace::probability(const Eigen::Vector2d& p_map) const {
 }
 
 bool KnownSpace::is_wall(const Eigen::Vector2d& p_map) const {
-  return probability(p_map) > kWall;
+  return probability(p_map) > LocalizationTuning::kWall;
 }
 
 bool KnownSpace::is_free(const Eigen::Vector2d& p_map) const {
-  return probability(p_map) < kFree;
+  return probability(p_map) < LocalizationTuning::kFree;
 }
 
 bool KnownSpace::is_blocked(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double margin) const {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/localization/tuning.hpp"
 #include "oort/map/map_check.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
@@ -16,48 +17,15 @@
 namespace oort {
 namespace {
 
-// What a match's shape does not show: the map's own errors, and that scans at the same place err alike.
-constexpr double kFloorXy = 0.02;      // [m]
-constexpr double kFloorTheta = 0.006;  // [rad]
-
-constexpr double kSigmas = 3.0;  // half width of the search window
-constexpr double kLeastWindowXy = 0.08, kLeastWindowTheta = 0.06;
-
-// A match farther from what odometry expects (99.9 % of a chi-square of 3 degrees of freedom) is of something else, say
-// of furniture that was moved: one scan of that fits well a little off. Only a search with several scans moves the pose
-// so far.
-constexpr double kGate = 16.27;
-
-// So many scans in a row without a match, and a robot that stands is uncertain too: somebody may have carried it.
-constexpr int kDoubtfulScans = 10;
-constexpr double kContradiction =
-    0.3;  // least support of a scan that the map merely does not explain; below counts more
-constexpr int kContradictionCounts = 4;
-// A pose that was followed for long is not given up for one search's answer: another search this much farther on must
-// agree with it.
-constexpr double kRivalWay = 0.5, kRivalXy = 0.15, kRivalTheta = 0.1;
-
-constexpr double kLostFactor = 3.0;  // of the way to uncertain
-
-// A match so far from where odometry leads is believed only if the views of the last metres do not fit worse there:
-// furniture that was moved can explain a scan at a wrong place, but not what was seen on the way to it. Only the
-// position counts: cheap odometry turns too far by more than that without harm.
-constexpr double kLeap = 0.15;       // [m]
-constexpr std::size_t kMemory = 12;  // views
-constexpr double kMuchWorse = 0.05;  // of support
-
-// And after one that is a little off, above all where scans did not fit before, more way must fit before it is relied
-// on.
-constexpr double kSurpriseXy = 0.12, kSurpriseTheta = 0.1;
-constexpr int kFewScans = 3;
-
 OdometryModel model_of(const OdometryNoiseParameters& p) {
   return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
           p.rotation_per_radian,   p.translation_floor,      p.rotation_floor};
 }
 
 Eigen::Matrix3d floored(Eigen::Matrix3d covariance) {
-  covariance.diagonal() += Eigen::Vector3d(kFloorXy * kFloorXy, kFloorXy * kFloorXy, kFloorTheta * kFloorTheta);
+  covariance.diagonal() += Eigen::Vector3d(LocalizationTuning::kSigmaFloorXy * LocalizationTuning::kSigmaFloorXy,
+                                           LocalizationTuning::kSigmaFloorXy * LocalizationTuning::kSigmaFloorXy,
+                                           LocalizationTuning::kSigmaFloorTheta * LocalizationTuning::kSigmaFloorTheta);
   return 0.5 * (covariance + covariance.transpose());
 }
 
@@ -88,7 +56,7 @@ Localizer::Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& 
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
       relocalizer_(map_, parameters),
       views_(kept_parameters_.scan_distance, kept_parameters_.scan_angle,
-             std::max(kMemory, static_cast<std::size_t>(kept_parameters_.max_scans))) {
+             std::max(LocalizationTuning::kRememberedViews, static_cast<std::size_t>(kept_parameters_.max_scans))) {
   if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
 }
 
@@ -161,7 +129,8 @@ void Localizer::follow(const PointCloud& cloud) {
   const std::optional<Hypothesis> found = match(cloud, rejection);
   if (!found) {
     ++statistics_.match_rejections[rejection];
-    doubtful_scans_ += support_ < kContradiction ? kContradictionCounts : 1;
+    doubtful_scans_ +=
+        support_ < LocalizationTuning::kMinUnexplainedSupport ? LocalizationTuning::kContradictionCounts : 1;
     return;
   }
   ++statistics_.matched;
@@ -177,11 +146,12 @@ void Localizer::follow(const PointCloud& cloud) {
 std::optional<Hypothesis> Localizer::match(const PointCloud& cloud, Rejection& rejection) {
   const frsm::Prior prior{to_frsm(*T_map_sensor_), covariance_};
   const auto half_width = [&](int axis, double least, double most) {
-    return std::clamp(kSigmas * std::sqrt(prior.covariance(axis, axis)), std::min(least, most), most);
+    return std::clamp(LocalizationTuning::kWindowSigmas * std::sqrt(prior.covariance(axis, axis)),
+                      std::min(least, most), most);
   };
-  const frsm::Window window{half_width(0, kLeastWindowXy, parameters_.search_window_xy),
-                            half_width(1, kLeastWindowXy, parameters_.search_window_xy),
-                            half_width(2, kLeastWindowTheta, parameters_.search_window_theta)};
+  const frsm::Window window{half_width(0, LocalizationTuning::kMinWindowXy, parameters_.search_window_xy),
+                            half_width(1, LocalizationTuning::kMinWindowXy, parameters_.search_window_xy),
+                            half_width(2, LocalizationTuning::kMinWindowTheta, parameters_.search_window_theta)};
   const frsm::Match match = matcher_.match(map_->fine(), returns_of(cloud), prior.mean, window, &prior);
   Hypothesis found{from_frsm(match.pose), match.covariance, {}};
   map_->weigh(cloud, found.T_map_sensor, found.support);
@@ -200,21 +170,22 @@ std::optional<Hypothesis> Localizer::match(const PointCloud& cloud, Rejection& r
 bool Localizer::is_expected(const Hypothesis& found) const {
   const Eigen::Vector3d d(found.T_map_sensor.x - T_map_sensor_->x, found.T_map_sensor.y - T_map_sensor_->y,
                           wrap_angle(found.T_map_sensor.theta - T_map_sensor_->theta));
-  return d.dot(floored(covariance_).ldlt().solve(d)) <= kGate;
+  return d.dot(floored(covariance_).ldlt().solve(d)) <= LocalizationTuning::kMaxInnovation;
 }
 
 bool Localizer::is_surprise(const Hypothesis& found) const {
   const Pose2 moved = between(*T_map_sensor_, found.T_map_sensor);
-  return moved.translation().norm() > kSurpriseXy ||
-         (doubtful_scans_ >= kFewScans && std::abs(moved.theta) > kSurpriseTheta);
+  return moved.translation().norm() > LocalizationTuning::kInnovationXy ||
+         (doubtful_scans_ >= LocalizationTuning::kFewScans &&
+          std::abs(moved.theta) > LocalizationTuning::kInnovationTheta);
 }
 
 bool Localizer::contradicts_memory(const Hypothesis& found) const {
-  if (between(*T_map_sensor_, found.T_map_sensor).translation().norm() <= kLeap) return false;
+  if (between(*T_map_sensor_, found.T_map_sensor).translation().norm() <= LocalizationTuning::kJump) return false;
   const auto support_at = [&](const Pose2& T_map_sensor) {
     return views_.weigh(*map_, T_map_sensor * inverse(*T_odom_sensor_)).value();
   };
-  return support_at(found.T_map_sensor) < support_at(*T_map_sensor_) - kMuchWorse;
+  return support_at(found.T_map_sensor) < support_at(*T_map_sensor_) - LocalizationTuning::kMuchLessSupport;
 }
 
 void Localizer::search(const PlacedScan& scan) {
@@ -246,8 +217,9 @@ bool Localizer::may_jump(const Hypothesis& found, const PlacedScan& scan) {
   const Pose2 T_map_odom = found.T_map_sensor * inverse(scan.T_odom_sensor);
   if (rival_) {
     const Pose2 apart = between(rival_->T_map_odom * scan.T_odom_sensor, found.T_map_sensor);
-    const bool agrees = apart.translation().norm() < kRivalXy && std::abs(apart.theta) < kRivalTheta;
-    if (agrees) return way_ - rival_->way >= kRivalWay;
+    const bool agrees = apart.translation().norm() < LocalizationTuning::kRivalXy &&
+                        std::abs(apart.theta) < LocalizationTuning::kRivalTheta;
+    if (agrees) return way_ - rival_->way >= LocalizationTuning::kRivalTravel;
   }
   rival_ = Rival{T_map_odom, way_};
   return false;
@@ -255,11 +227,12 @@ bool Localizer::may_jump(const Hypothesis& found, const PlacedScan& scan) {
 
 LocalizationState Localizer::judge() const {
   if (!T_map_sensor_) return LocalizationState::kSearching;
-  if (deviation() > parameters_.lost_deviation || doubtful_way_ > kLostFactor * parameters_.doubt_distance) {
+  if (deviation() > parameters_.lost_deviation ||
+      doubtful_way_ > LocalizationTuning::kLostFactor * parameters_.doubt_distance) {
     return LocalizationState::kLost;
   }
-  const bool in_doubt =
-      !is_seen_ || probation_ > 0.0 || doubtful_way_ > parameters_.doubt_distance || doubtful_scans_ >= kDoubtfulScans;
+  const bool in_doubt = !is_seen_ || probation_ > 0.0 || doubtful_way_ > parameters_.doubt_distance ||
+                        doubtful_scans_ >= LocalizationTuning::kDoubtfulScans;
   return in_doubt || deviation() > parameters_.uncertain_deviation ? LocalizationState::kUncertain
                                                                    : LocalizationState::kTracking;
 }

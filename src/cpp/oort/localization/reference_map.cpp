@@ -6,6 +6,7 @@
 #include <string>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/localization/tuning.hpp"
 #include "oort/loop_closure/facing.hpp"
 #include "oort/map/map_check.hpp"
 #include "oort/matching/frsm_adapter.hpp"
@@ -15,16 +16,10 @@
 namespace oort {
 namespace {
 
-constexpr double kCoarseCell = 0.05;   // [m]
-constexpr double kCoarseSigma = 0.08;  // [m]; wide enough that a pose half a cell and half a step off still scores
-constexpr double kBlockMargin = 0.25;  // [m] before a return where a wall may be the one that it is on
-constexpr double kBlockedWeight = 1.0;
-constexpr double kTurnedWeight = 1.0;
-
 frsm::TableParams coarse_params(const Parameters& parameters) {
   frsm::TableParams params = table_params(parameters.incremental_graph_builder.frsm_matcher);
-  params.cell = kCoarseCell;
-  params.sigma = kCoarseSigma;
+  params.cell = LocalizationTuning::kCoarseCell;
+  params.sigma = LocalizationTuning::kCoarseSigma;
   return params;
 }
 
@@ -40,7 +35,7 @@ const Map& checked(const Map& map, const Parameters& parameters) {
 
 double Support::value() const {
   if (points == 0) return 0.0;
-  return (hits - kTurnedWeight * turned - kBlockedWeight * blocked) / points;
+  return (hits - LocalizationTuning::kTurnedWeight * turned - LocalizationTuning::kBlockedWeight * blocked) / points;
 }
 
 ReferenceMap::ReferenceMap(const Map& map, const Parameters& parameters)
@@ -66,7 +61,7 @@ void ReferenceMap::weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Sup
   for (const frsm::Point& point : points) {
     const Eigen::Vector2d p = T_map_sensor * Eigen::Vector2d(point.x, point.y);
     ++support.points;
-    if (space_.is_blocked(T_map_sensor.translation(), p, kBlockMargin)) {
+    if (space_.is_blocked(T_map_sensor.translation(), p, LocalizationTuning::kBlockedMargin)) {
       ++support.blocked;
     } else if (hits(p)) {
       ++support.hits;

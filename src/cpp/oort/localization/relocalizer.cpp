@@ -9,19 +9,12 @@
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/localization/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
 
 namespace oort {
 namespace {
-
-constexpr double kSearchVoxel = 0.1;                          // [m] of the points that are looked for everywhere
-constexpr double kMatchVoxel = 0.05;                          // [m] of those that are matched around each peak
-constexpr double kLeastScore = 0.01;                          // that a peak can be asked for
-constexpr double kPeakRatio = 0.75;                           // of the best peak's score
-constexpr double kApart = 0.3;                                // [m] and [rad] between two places
-constexpr double kFineReach = 0.1;                            // [m] around a peak
-constexpr double kMinThetaStep = 0.01, kMaxThetaStep = 0.05;  // [rad]
 
 // One point of each cell of a lattice, the first of them: so near walls do not outweigh far ones.
 frsm::Points one_per_cell(const frsm::Points& points, double cell) {
@@ -61,12 +54,14 @@ double reach_of(const frsm::Points& points) {
 
 // Turning by a step moves the farthest point by a cell.
 double theta_step(const frsm::Points& points, double cell) {
-  return std::clamp(cell / std::max(reach_of(points), cell), kMinThetaStep, kMaxThetaStep);
+  return std::clamp(cell / std::max(reach_of(points), cell), LocalizationTuning::kMinThetaStep,
+                    LocalizationTuning::kMaxThetaStep);
 }
 
 bool same_place(const Pose2& a, const Pose2& b) {
   const Pose2 d = between(a, b);
-  return d.translation().norm() < kApart && std::abs(d.theta) < kApart;
+  return d.translation().norm() < LocalizationTuning::kPeakSpacing &&
+         std::abs(d.theta) < LocalizationTuning::kPeakSpacing;
 }
 
 }  // namespace
@@ -83,7 +78,7 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
     if (!is_finite(scan.T_odom_sensor)) throw InputError("relocalisation: a scan's odometry pose is not finite");
   }
   Relocalization result;
-  const frsm::Points points = one_per_cell(join(scans), kMatchVoxel);
+  const frsm::Points points = one_per_cell(join(scans), LocalizationTuning::kMatchVoxel);
   if (points.size() < static_cast<std::size_t>(parameters_.min_points)) {
     result.rejection = Rejection::kSearchTooFewPoints;
     return result;
@@ -109,10 +104,10 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   const double half_x = 0.5 * limits.width * limits.resolution;
   const double half_y = 0.5 * limits.height * limits.resolution;
   frsm::PeakParams search;
-  search.floor = std::max(min_score_, kLeastScore);
-  search.ratio = kPeakRatio;
-  search.apart_xy = search.apart_theta = kApart;
-  const frsm::Points sparse = one_per_cell(points, kSearchVoxel);
+  search.floor = std::max(min_score_, LocalizationTuning::kMinScore);
+  search.ratio = LocalizationTuning::kPeakRatio;
+  search.apart_xy = search.apart_theta = LocalizationTuning::kPeakSpacing;
+  const frsm::Points sparse = one_per_cell(points, LocalizationTuning::kSearchVoxel);
   search.theta_step = theta_step(sparse, map_->coarse().params().cell);
   const frsm::Peaks peaks =
       frsm::find_peaks(map_->coarse(), sparse, {limits.origin_x + half_x, limits.origin_y + half_y, 0.0},
@@ -120,8 +115,9 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   complete = peaks.complete;
   std::vector<Hypothesis> found;
   for (const frsm::Peak& peak : peaks.peaks) {
-    const frsm::Match match =
-        matcher_.match(map_->fine(), points, peak.pose, {kFineReach, kFineReach, 2.0 * search.theta_step}, nullptr);
+    const frsm::Match match = matcher_.match(
+        map_->fine(), points, peak.pose,
+        {LocalizationTuning::kFineReach, LocalizationTuning::kFineReach, 2.0 * search.theta_step}, nullptr);
     if (match.hits == 0) continue;
     Hypothesis hypothesis{from_frsm(match.pose), match.covariance, {}};
     for (const PlacedScan& scan : scans) {

@@ -21,9 +21,6 @@ struct Closure {
   double firmness = 1.0;  ///< how many times as much as usual it costs to switch it off
 };
 
-/// A closure this far from what the graph expects is solved at once: 99 % of a chi-square of three degrees of freedom.
-constexpr double kSurprise = 11.345;
-
 /// Makes a closure a switchable link of the map, with its result. Returns its squared Mahalanobis distance from the
 /// poses as they are, by its own covariance.
 double add_closure(const Closure& closure, std::uint64_t edge_id, Map& map);

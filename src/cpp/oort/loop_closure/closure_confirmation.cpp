@@ -5,28 +5,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "oort/loop_closure/tuning.hpp"
+
 namespace oort {
 namespace {
-
-constexpr std::uint64_t kMaxAge = 60;  // nodes; drift within so many is small against the tolerances
-constexpr std::size_t kNeeded = 2;     // closures that agree
-constexpr double kMinTravel = 1.5;     // [m] between the first and the last of them
-constexpr double kMaxDistance = 0.2;   // [m]
-constexpr double kMaxAngle = 0.1;      // [rad]
 
 /// Whether going from one query to the other by way of the two closures leads to where the drive did.
 bool agree(const Map& map, const Closure& a, const Closure& b) {
   const auto& nodes = map.graph.nodes;
   const Pose2 by_closures = a.T_from_to * between(nodes[a.to].pose, nodes[b.to].pose) * inverse(b.T_from_to);
   const Pose2 difference = between(between(nodes[a.from].pose, nodes[b.from].pose), by_closures);
-  return difference.translation().norm() <= kMaxDistance && std::abs(difference.theta) <= kMaxAngle;
+  return difference.translation().norm() <= LoopClosureTuning::kConfirmationDistance &&
+         std::abs(difference.theta) <= LoopClosureTuning::kConfirmationAngle;
 }
 
 }  // namespace
 
 std::vector<Closure> ClosureConfirmation::add(const Map& map, const Closure& closure) {
   const auto is_old = [&](const Closure& other) {  // maps that are merged are also gone through backwards
-    return std::max(other.from, closure.from) - std::min(other.from, closure.from) > kMaxAge;
+    return std::max(other.from, closure.from) - std::min(other.from, closure.from) >
+           LoopClosureTuning::kConfirmationAge;
   };
   waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), is_old), waiting_.end());
   std::vector<Closure> confirmed;
@@ -38,7 +36,7 @@ std::vector<Closure> ClosureConfirmation::add(const Map& map, const Closure& clo
     travel = std::max(travel, (map.graph.nodes[other.from].pose.translation() - here).norm());
   }
   confirmed.push_back(closure);
-  if (confirmed.size() < kNeeded || travel < kMinTravel) {
+  if (confirmed.size() < LoopClosureTuning::kConfirmations || travel < LoopClosureTuning::kConfirmationTravel) {
     waiting_.push_back(closure);
     return {};
   }

@@ -5,19 +5,12 @@
 #include <algorithm>
 
 #include "oort/loop_closure/submaps.hpp"
+#include "oort/loop_closure/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
 
 namespace oort {
 namespace {
-
-// What is known without a look: the reach of the contacts and the dock's moves are limits, not deviations.
-constexpr double kSigmasOfReach = 2.0;
-
-// How far the chain is bent over the nodes that are matched, as standard deviations: matched closures in homes seen
-// with 60 degrees are off by up to 7 cm and 4 degrees where every point fits.
-constexpr double kBend = 0.03;       // [m]
-constexpr double kBendTheta = 0.02;  // [rad]
 
 /// Whether matches of fewer nodes than documented are tried.
 bool has_fallback(const DockGraphBuilderParameters& p) {
@@ -141,7 +134,8 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   // The robot touches the contacts somewhere along their size, and the dock may have been moved.
   const double reach = std::max(parameters_.dock_contacts_size + parameters_.dock_max_translation, table_.cell);
   const Eigen::Vector3d limits(reach, reach, parameters_.search_window_theta);
-  const double sigmas = parameters_.closure_firmness > 1.0 ? kSigmasOfReach : 1.0;  // 1 is what is documented
+  const double sigmas =
+      parameters_.closure_firmness > 1.0 ? LoopClosureTuning::kReachSigmas : 1.0;  // 1 is what is documented
   const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / sigmas).cwiseAbs2().asDiagonal()};
   const auto submap = draw_submap(map, reference, table_, contours_);
   const frsm::Match match = matcher_.match(*submap, points_of(map, query_nodes), prior.mean,
@@ -160,7 +154,10 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   } else {
     Eigen::Matrix3d covariance = match.covariance;
     if (parameters_.closure_firmness > 1.0) {  // what can hardly be doubted must be honest
-      covariance += Eigen::Vector3d(kBend, kBend, kBendTheta).cwiseAbs2().asDiagonal();
+      covariance += Eigen::Vector3d(LoopClosureTuning::kDockSigma, LoopClosureTuning::kDockSigma,
+                                    LoopClosureTuning::kDockSigmaTheta)
+                        .cwiseAbs2()
+                        .asDiagonal();
     }
     return Closure{dock.node, query, T_dock_query, covariance, match.hit_fraction, parameters_.closure_firmness};
   }

@@ -4,18 +4,16 @@
 
 #include <cmath>
 
+#include "oort/geometry/tuning.hpp"
+#include "oort/loop_closure/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
 namespace {
 
-constexpr double kCell = 0.1;            // [m]; a wall's two sides are farther apart or fall together when mistaken
-constexpr double kMaxNeighborGap = 0.3;  // [m]; neighbours in the scan that are farther off are of something else
-constexpr double kAlong = 0.7;           // cosine: surfaces that turn more (45 degrees) are not the same line
-
 std::uint64_t cell_of(const Eigen::Vector2d& p) {
-  const auto x = static_cast<std::int32_t>(std::floor(p.x() / kCell));
-  const auto y = static_cast<std::int32_t>(std::floor(p.y() / kCell));
+  const auto x = static_cast<std::int32_t>(std::floor(p.x() / LoopClosureTuning::kNormalCell));
+  const auto y = static_cast<std::int32_t>(std::floor(p.y() / LoopClosureTuning::kNormalCell));
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) | static_cast<std::uint32_t>(y);
 }
 
@@ -31,7 +29,10 @@ std::vector<SurfacePoint> surface_points(const frsm::Points& points) {
     const Eigen::Vector2d before(points[i - 1].x, points[i - 1].y);
     const Eigen::Vector2d here(points[i].x, points[i].y);
     const Eigen::Vector2d after(points[i + 1].x, points[i + 1].y);
-    if ((here - before).norm() > kMaxNeighborGap || (after - here).norm() > kMaxNeighborGap) continue;
+    if ((here - before).norm() > GeometryTuning::kMaxSurfaceGap ||
+        (after - here).norm() > GeometryTuning::kMaxSurfaceGap) {
+      continue;
+    }
     Eigen::Vector2d normal = Eigen::Vector2d(before.y() - after.y(), after.x() - before.x());
     if (normal.norm() < 1e-6) continue;
     normal.normalize();
@@ -62,14 +63,14 @@ double FacingMap::agreement(const std::vector<SurfacePoint>& surfaces, const Pos
     Eigen::Vector2d known = Eigen::Vector2d::Zero();
     for (int dx = -1; dx <= 1; ++dx) {
       for (int dy = -1; dy <= 1; ++dy) {
-        const auto cell = normals_.find(cell_of(p + kCell * Eigen::Vector2d(dx, dy)));
+        const auto cell = normals_.find(cell_of(p + LoopClosureTuning::kNormalCell * Eigen::Vector2d(dx, dy)));
         if (cell != normals_.end()) known += cell->second;
       }
     }
     if (known.norm() < 1e-6) continue;
     const double cosine = known.normalized().dot(R * surface.normal);
-    if (cosine > kAlong) ++same;
-    if (cosine < -kAlong) ++opposite;
+    if (cosine > LoopClosureTuning::kMinCosine) ++same;
+    if (cosine < -LoopClosureTuning::kMinCosine) ++opposite;
   }
   return same + opposite == 0 ? 1.0 : static_cast<double>(same) / (same + opposite);
 }

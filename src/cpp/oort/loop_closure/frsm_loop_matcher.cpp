@@ -5,29 +5,12 @@
 #include <algorithm>
 #include <memory>
 
+#include "oort/loop_closure/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
 
 namespace oort {
 namespace {
-
-// How far around the rough match the fine one looks.
-constexpr double kFineCells = 3.0;
-constexpr double kFineThetaSteps = 4.0;
-
-// A wide search that finds nothing is by far the dearest, as no good pose prunes it: it ends early if it need not go on
-// below the score that a match with enough hits has anyway: this much of the share of hits that is asked for. Believed
-// ones score 0.92 of it and more, but one of 3,900 on the logs of CSAIL and Killian court.
-constexpr double kScorePerHit = 0.75;
-
-// Of a submap, in one piece of work: about as dear as a match.
-constexpr std::size_t kScansDrawnAtOnce = 8;
-
-// Units of work.
-constexpr double kWorkPerPointDrawn = 0.08;
-constexpr double kWorkPerPoint = 0.05;  // of one pass of the polish
-constexpr double kPolishPasses = 20;
-constexpr double kWorkPerLookup = 0.003;  // of one cell of a table
 
 frsm::Points thinned(const frsm::Points& points, std::size_t count) {
   if (count == 0 || points.size() <= count) return points;
@@ -39,7 +22,7 @@ frsm::Points thinned(const frsm::Points& points, std::size_t count) {
 frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const LoopScale& scale, double min_hits) {
   frsm::MatcherParams params = matcher_params(p);
   params.ambiguity_floor = scale.max_ambiguity;
-  params.min_score = kScorePerHit * min_hits;
+  params.min_score = LoopClosureTuning::kScorePerInlier * min_hits;
   return params;
 }
 
@@ -55,7 +38,8 @@ FrsmLoopMatcher::FrsmLoopMatcher(const Parameters& parameters, const LoopScale& 
     : parameters_(parameters.loop_closure_graph_builder.frsm_matcher),
       scale_(scale),
       table_(loop_table_params(parameters.incremental_graph_builder.frsm_matcher, scale)),
-      submaps_(table_cache(scale.submap_nodes, kSubmapCacheBytes, table_, frsm::ContourParams::urg())),
+      submaps_(
+          table_cache(scale.submap_nodes, LoopClosureTuning::kSubmapCacheBytes, table_, frsm::ContourParams::urg())),
       matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale,
                                    parameters_.fine_match_hitpct_threshold)) {}
 
@@ -65,8 +49,9 @@ bool FrsmLoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) co
 }
 
 bool FrsmLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter) {
-  charge(meter, kWorkPerPointDrawn * static_cast<double>(kScansDrawnAtOnce * map.clouds[candidate].points.size()));
-  return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, kScansDrawnAtOnce);
+  charge(meter, LoopClosureTuning::kFrsmWorkPerDrawn *
+                    static_cast<double>(LoopClosureTuning::kScansPerPiece * map.clouds[candidate].points.size()));
+  return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, LoopClosureTuning::kScansPerPiece);
 }
 
 LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
@@ -82,22 +67,26 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, s
   const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
   frsm::OnLookups on_lookups;
   if (meter != nullptr) {
-    charge(meter, kWorkPerPoint * static_cast<double>(points.size()) * kPolishPasses);
-    on_lookups = [meter](std::uint64_t lookups) { charge(meter, kWorkPerLookup * static_cast<double>(lookups)); };
+    charge(meter,
+           LoopClosureTuning::kFrsmWorkPerPoint * static_cast<double>(points.size()) * LoopClosureTuning::kFrsmPasses);
+    on_lookups = [meter](std::uint64_t lookups) {
+      charge(meter, LoopClosureTuning::kFrsmWorkPerLookup * static_cast<double>(lookups));
+    };
   }
   const frsm::Prior prior{to_frsm(expected), window.covariance};
   const frsm::Match rough = matcher_.match(*submap, thinned(points, scale_.rough_points), prior.mean,
                                            {window.xy, window.xy, window.theta}, &prior, on_lookups);
   if (rough.status == frsm::Status::kNoOverlap) return rejected(Rejection::kNoHits, expected, 0.0);
   const Pose2 roughly = from_frsm(rough.pose);
-  if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold)
+  if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold) {
     return rejected(Rejection::kRoughHits, roughly, rough.hit_fraction);
+  }
   if (rough.saturated) return rejected(Rejection::kWindowBorder, roughly, rough.hit_fraction);
   if (rough.ambiguity > scale_.max_ambiguity) return rejected(Rejection::kAmbiguous, roughly, rough.hit_fraction);
-  const double fine_xy = kFineCells * table_.cell;
-  const frsm::Match fine =
-      matcher_.match(*submap, points, rough.pose, {fine_xy, fine_xy, kFineThetaSteps * matcher_.params().theta_step},
-                     &prior, on_lookups);
+  const double fine_xy = LoopClosureTuning::kFineCells * table_.cell;
+  const frsm::Match fine = matcher_.match(
+      *submap, points, rough.pose,
+      {fine_xy, fine_xy, LoopClosureTuning::kFineThetaSteps * matcher_.params().theta_step}, &prior, on_lookups);
   return {from_frsm(fine.pose), fine.covariance + scale_.bend(), fine.hit_fraction,
           fine.hit_fraction < parameters_.fine_match_hitpct_threshold ? Rejection::kFineHits : Rejection::kNone};
 }

@@ -8,6 +8,7 @@
 #include "oort/grid/range_data.hpp"
 #include "oort/grid/voxel_filter.hpp"
 #include "oort/loop_closure/submaps.hpp"
+#include "oort/loop_closure/tuning.hpp"
 #include "oort/matching/ceres_matcher.hpp"
 #include "oort/matching/fast_correlative_matcher.hpp"
 #include "oort/matching/frsm_adapter.hpp"
@@ -15,17 +16,12 @@
 namespace oort {
 namespace {
 
-// Units of work.
-constexpr double kWorkPerPointDrawn = 2.0;
-constexpr double kWorkPerMatch = 5000.0;       // of the refinement by Ceres
-constexpr double kWorkPerPointAndTurn = 50.0;  // of the search, for each radian of the window
-
 /// Bounds are those of a whole grid: one that grows is drawn anew.
 SubmapCache<BoundGrids> grid_cache(const BranchAndBoundMatcherParameters& p, const LoopScale& scale) {
   const ProbabilityGridParameters grid = p.probability_grid;
   const int depth = p.fast_correlative_scan_matcher.branch_and_bound_depth;
   const double reach = scale.reach;
-  return {scale.submap_nodes, kSubmapCacheBytes,
+  return {scale.submap_nodes, LoopClosureTuning::kSubmapCacheBytes,
           [grid, depth, reach](const Map& map, const Chains& chains, std::uint64_t node,
                                const std::vector<std::uint64_t>& nodes, std::size_t /*drawn*/,
                                const std::shared_ptr<BoundGrids>& /*so_far*/) {
@@ -72,7 +68,8 @@ bool GridLoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) co
 }
 
 bool GridLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter) {
-  charge(meter, kWorkPerPointDrawn * static_cast<double>(scale_.submap_nodes * map.clouds[candidate].points.size()));
+  charge(meter, LoopClosureTuning::kGridWorkPerDrawn *
+                    static_cast<double>(scale_.submap_nodes * map.clouds[candidate].points.size()));
   return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, std::numeric_limits<std::size_t>::max());
 }
 
@@ -84,7 +81,8 @@ LoopMatcher::Found GridLoopMatcher::find(const Map& map, const Chains& chains, s
   const Points points = adaptive_voxel_filter(
       to_points(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach)),
       parameters_.adaptive_voxel_filter);
-  charge(meter, kWorkPerMatch + kWorkPerPointAndTurn * static_cast<double>(points.size()) * window.theta);
+  charge(meter, LoopClosureTuning::kGridWorkPerMatch +
+                    LoopClosureTuning::kGridWorkPerTurn * static_cast<double>(points.size()) * window.theta);
   const std::shared_ptr<const BoundGrids> submap = submaps_.get(map, chains, candidate);
   const ScanMatch rough =
       FastCorrelativeMatcher(submap, {window.xy, window.theta, parameters_.min_score}).match(points, expected);

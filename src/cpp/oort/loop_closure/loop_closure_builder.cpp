@@ -6,34 +6,17 @@
 #include <cmath>
 
 #include "oort/loop_closure/facing.hpp"
+#include "oort/loop_closure/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
 namespace {
 
-// The window is never smaller: what is believed to be known well may be known worse.
-constexpr double kLeastWindow = 0.4;        // [m]
-constexpr double kLeastWindowTheta = 0.15;  // [rad]
-constexpr double kSigmasOfReach = 2.0;      // how much farther candidates may be for being uncertain
-
-// Beyond this half width one scan is too little to go by.
-constexpr double kWideWindow = 0.7;       // [m]
-constexpr std::uint64_t kWideStride = 4;  // every how many-th node looks that far: what it sees changes little
-
-// What a closure is off by that the shape of its match does not show: submaps are bent, and walls look thicker or
-// thinner from elsewhere. Mean ATE of 20 made-up homes 0.0122 m instead of 0.0143 m without.
-constexpr double kScanSigma = 0.03;        // [m]
-constexpr double kScanSigmaTheta = 0.008;  // [rad]
-constexpr LoopScale kWay{31, 61, 250, 1000, 0.9, 0.05, 0.015, 8.0};
-
-// Units of work: of looking for candidates, for each node and edge of the map; of the facing test, for each return.
-constexpr double kWorkPerNode = 0.35;
-constexpr double kWorkPerEdge = 0.12;
-constexpr double kWorkPerFacingReturn = 0.4;
-
-// A closure that moves the newest node by more waits for others that say the same.
-constexpr double kFar = 0.5;        // [m]
-constexpr double kFarAngle = 0.15;  // [rad]
+/// Of the scans of the last metres, matched together.
+constexpr LoopScale kWideScale{LoopClosureTuning::kWideQueryNodes,   LoopClosureTuning::kWideSubmapNodes,
+                               LoopClosureTuning::kWideCoarsePoints, LoopClosureTuning::kWideFinePoints,
+                               LoopClosureTuning::kWideMaxAmbiguity, LoopClosureTuning::kWideSigma,
+                               LoopClosureTuning::kWideSigmaTheta,   LoopClosureTuning::kWideReach};
 
 LoopSearch loop_search(const LoopClosureGraphBuilderParameters& parameters) {
   if (parameters.scanmatcher == "branch_and_bound_matcher") {
@@ -53,25 +36,25 @@ LoopScale scan_scale(const LoopClosureGraphBuilderParameters& p, const LoopSearc
   }
   scale.submap_nodes = static_cast<std::uint64_t>(p.candidate_search.submap_neighborhood_size);
   if (search.is_adaptive()) {
-    scale.sigma_xy = kScanSigma;
-    scale.sigma_theta = kScanSigmaTheta;
+    scale.sigma_xy = LoopClosureTuning::kScanSigma;
+    scale.sigma_theta = LoopClosureTuning::kScanSigmaTheta;
   }
   return scale;
 }
 
 bool is_wide(const SearchWindow& window) {
-  return window.xy > kWideWindow;
+  return window.xy > LoopClosureTuning::kWideWindow;
 }
 
 /// Whether the node is among the first of a chain that has others before it: where the chain belongs is not known yet.
 bool is_seeking(const Chains& chains, std::uint64_t query) {
   const std::uint64_t begin = chains.segment_begin(query);
-  return begin > 0 && query - begin < kWay.query_nodes;
+  return begin > 0 && query - begin < kWideScale.query_nodes;
 }
 
 /// The window around the expected pose that one scan is enough for.
 SearchWindow narrowed(SearchWindow window) {
-  window.xy = std::min(window.xy, kWideWindow);
+  window.xy = std::min(window.xy, LoopClosureTuning::kWideWindow);
   return window;
 }
 
@@ -113,12 +96,13 @@ LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
     : parameters_(parameters.loop_closure_graph_builder),
       search_(loop_search(parameters_)),
       scan_matcher_(make_loop_matcher(parameters, scan_scale(parameters_, search_))),
-      way_matcher_(make_loop_matcher(parameters, kWay)) {}
+      way_matcher_(make_loop_matcher(parameters, kWideScale)) {}
 
 void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end,
                                      WorkMeter* meter) {
-  charge(meter, kWorkPerNode * static_cast<double>(map.graph.nodes.size()) +
-                    kWorkPerEdge * static_cast<double>(map.graph.edges.size() + map.graph.switchable_edges.size()));
+  charge(meter, LoopClosureTuning::kWorkPerNode * static_cast<double>(map.graph.nodes.size()) +
+                    LoopClosureTuning::kWorkPerEdge *
+                        static_cast<double>(map.graph.edges.size() + map.graph.switchable_edges.size()));
   if (search_.is_adaptive()) {
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
@@ -127,7 +111,7 @@ void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::
     const SearchWindow window = this->window(map, query, candidate);
     const bool wide = search_.is_adaptive() && is_wide(window);
     if (wide && is_seeking(chains, query)) waiting_.push_back({query, candidate, narrowed(window)});
-    if (wide && query % kWideStride != 0) continue;
+    if (wide && query % LoopClosureTuning::kWideStride != 0) continue;
     waiting_.push_back({query, candidate, window});
   }
 }
@@ -193,7 +177,7 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
     const double distance = (node.pose.translation() - center).norm();
     double reach = search.max_candidate_distance;
     if (node.id < from_query_.size() && from_query_[node.id]) {
-      reach += kSigmasOfReach * std::sqrt(from_query_[node.id]->topLeftCorner<2, 2>().trace());
+      reach += LoopClosureTuning::kReachSigmas * std::sqrt(from_query_[node.id]->topLeftCorner<2, 2>().trace());
     }
     const bool in_reach = search.max_candidate_distance == 0.0 || distance <= reach;
     if (in_reach && has_submap && node.id != query &&
@@ -240,10 +224,12 @@ SearchWindow LoopClosureBuilder::window(const Map& map, std::uint64_t query, std
                                                         rotate_covariance(*from_query_[candidate], -T_map_query.theta));
   SearchWindow window;
   const double wanted_xy = sigmas * std::sqrt(covariance.topLeftCorner<2, 2>().trace());
-  window.xy = std::min(std::max(wanted_xy, kLeastWindow), search_.window_xy);
-  window.theta = std::min(std::max(sigmas * std::sqrt(covariance(2, 2)), kLeastWindowTheta), search_.window_theta);
+  window.xy = std::min(std::max(wanted_xy, LoopClosureTuning::kMinWindow), search_.window_xy);
+  window.theta = std::min(std::max(sigmas * std::sqrt(covariance(2, 2)), LoopClosureTuning::kMinWindowTheta),
+                          search_.window_theta);
   // As a prior it is taken for twice as uncertain: what lies near the border is unlikely, not impossible.
-  window.covariance = 0.25 * (sigmas * sigmas * covariance + variances(kLeastWindow, kLeastWindowTheta));
+  window.covariance = 0.25 * (sigmas * sigmas * covariance +
+                              variances(LoopClosureTuning::kMinWindow, LoopClosureTuning::kMinWindowTheta));
   return window;
 }
 
@@ -263,7 +249,7 @@ LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chain
            is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
            std::abs(expected.theta) >= search_.match_filter.opposite_dir_threshold);
   if (found.rejection != Rejection::kNone) return found;
-  charge(meter, kWorkPerFacingReturn * static_cast<double>(map.clouds[query].points.size()) *
+  charge(meter, LoopClosureTuning::kWorkPerNormal * static_cast<double>(map.clouds[query].points.size()) *
                     (parameters_.candidate_search.submap_neighborhood_size + 1));
   const FacingMap facing(map, chains, candidate,
                          chains.neighborhood(candidate, static_cast<std::uint64_t>(
@@ -279,7 +265,8 @@ bool LoopClosureBuilder::must_be_confirmed(const Map& map, const Closure& closur
   if (!search_.is_adaptive()) return false;
   const Pose2 expected = between(map.graph.nodes[closure.from].pose, map.graph.nodes[closure.to].pose);
   const Pose2 moved = between(expected, closure.T_from_to);
-  return moved.translation().norm() >= kFar || std::abs(moved.theta) >= kFarAngle;
+  return moved.translation().norm() >= LoopClosureTuning::kUnconfirmedDistance ||
+         std::abs(moved.theta) >= LoopClosureTuning::kUnconfirmedAngle;
 }
 
 }  // namespace oort

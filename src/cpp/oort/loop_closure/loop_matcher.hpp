@@ -36,9 +36,6 @@ struct LoopScale {
   Eigen::Matrix3d bend() const { return Eigen::Vector3d(sigma_xy, sigma_xy, sigma_theta).cwiseAbs2().asDiagonal(); }
 };
 
-/// Of submaps in memory at once: enough for the places a robot passes between two visits to one of them.
-constexpr std::size_t kSubmapCacheBytes = std::size_t{128} << 20;
-
 /// Measures where a node stands in the submap of another.
 class LoopMatcher {
  public:

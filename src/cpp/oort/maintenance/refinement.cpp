@@ -12,32 +12,11 @@
 #include "oort/graph/graph_solver.hpp"
 #include "oort/graph/internal/residuals.hpp"
 #include "oort/maintenance/scan_alignment.hpp"
+#include "oort/maintenance/tuning.hpp"
 #include "oort/maintenance/view_pairs.hpp"
 
 namespace oort {
 namespace {
-
-constexpr int kRounds = 4;
-constexpr int kSteps = 2;  // of solving per round: what is linked changes with the next
-constexpr double kTolerance = 1e-3;
-
-// How far apart surfaces may be to be taken for the same, at first and once they were brought together.
-constexpr double kFirstDistance = 0.2;  // [m]
-constexpr double kDistance = 0.1;       // [m]
-
-// Of two scans with less in common, what they say is doubtful.
-constexpr int kLeastPairs = 4;
-constexpr double kLeastShare = 0.15;
-
-// A correction that is larger is not within reach of the surfaces that it was found with.
-constexpr double kMostTurn = 0.1;  // [rad]
-
-// What a closure still counts: it was made from the same scans, less precisely.
-constexpr double kClosureShare = 0.1;
-constexpr double kSwitchedOff = 0.3;
-
-// The squared error at which a link between scans counts half, once all have pulled together.
-constexpr double kDoubt = 4.0;
 
 std::vector<int> variables_of(const Graph& graph) {
   std::vector<int> variables;
@@ -61,16 +40,18 @@ std::vector<Link> known_links(const Graph& graph) {
   std::vector<Link> links;
   for (const Edge& edge : graph.edges) links.push_back(link_of(edge, 1.0));
   for (const SwitchableEdge& edge : graph.switchable_edges) {
-    if (edge.switch_value < kSwitchedOff) continue;
-    links.push_back(link_of(edge, kClosureShare * edge.switch_value * edge.switch_value));
+    if (edge.switch_value < RefinementTuning::kMinSwitch) continue;
+    links.push_back(link_of(edge, RefinementTuning::kClosureShare * edge.switch_value * edge.switch_value));
   }
   return links;
 }
 
 Rejection rejection_of(const ScanAlignment& alignment, double max_distance) {
-  if (alignment.pairs < kLeastPairs || alignment.share < kLeastShare) return Rejection::kFewSurfaces;
-  const bool far =
-      alignment.correction.head<2>().norm() > max_distance || std::abs(alignment.correction.z()) > kMostTurn;
+  if (alignment.pairs < RefinementTuning::kMinPieces || alignment.share < RefinementTuning::kMinShare) {
+    return Rejection::kFewSurfaces;
+  }
+  const bool far = alignment.correction.head<2>().norm() > max_distance ||
+                   std::abs(alignment.correction.z()) > RefinementTuning::kMaxTurn;
   return far ? Rejection::kFar : Rejection::kNone;
 }
 
@@ -104,7 +85,9 @@ ScanLinks link_scans(const std::vector<std::vector<SurfacePiece>>& pieces, const
     const Eigen::Vector3d& c = alignment.correction;
     link.T_i_j = {T_i_j.x + c.x(), T_i_j.y + c.y(), wrap_angle(T_i_j.theta + c.z())};
     const double chi2 = (alignment.W * c).squaredNorm();
-    link.W = judge ? Eigen::Matrix3d(kDoubt / (kDoubt + chi2) * alignment.W) : alignment.W;
+    link.W = judge ? Eigen::Matrix3d(RefinementTuning::kRobustSquaredError /
+                                     (RefinementTuning::kRobustSquaredError + chi2) * alignment.W)
+                   : alignment.W;
     result.links.push_back(link);
   }
   return result;
@@ -112,9 +95,11 @@ ScanLinks link_scans(const std::vector<std::vector<SurfacePiece>>& pieces, const
 
 std::vector<Pose2> solved(const std::vector<Pose2>& poses, const std::vector<int>& variables, std::vector<Link> links) {
   const std::size_t count = links.size();
-  GraphSolver solver(poses, variables, std::move(links), kDoubt);
+  GraphSolver solver(poses, variables, std::move(links), RefinementTuning::kRobustSquaredError);
   solver.use(std::vector<bool>(count, true));
-  for (int k = 0; k < kSteps && solver.step(kTolerance) == GraphSolver::Progress::kMoved; ++k) {
+  for (int k = 0;
+       k < RefinementTuning::kSolverSteps && solver.step(RefinementTuning::kTolerance) == GraphSolver::Progress::kMoved;
+       ++k) {
   }
   return solver.poses();
 }
@@ -131,13 +116,13 @@ RefinementCounts refine(Map& map) {
   const std::vector<int> variables = variables_of(map.graph);
   const std::vector<Link> known = known_links(map.graph);
 
-  ScanLinks scans = link_scans(pieces, pairs, poses, kFirstDistance, false);
-  const ScanLinks before = link_scans(pieces, pairs, poses, kDistance, false);
-  for (; counts.rounds < kRounds && !scans.links.empty(); ++counts.rounds) {
+  ScanLinks scans = link_scans(pieces, pairs, poses, RefinementTuning::kInitialDistance, false);
+  const ScanLinks before = link_scans(pieces, pairs, poses, RefinementTuning::kDistance, false);
+  for (; counts.rounds < RefinementTuning::kRounds && !scans.links.empty(); ++counts.rounds) {
     std::vector<Link> links = known;
     links.insert(links.end(), scans.links.begin(), scans.links.end());
     poses = solved(poses, variables, std::move(links));
-    scans = link_scans(pieces, pairs, poses, kDistance, true);
+    scans = link_scans(pieces, pairs, poses, RefinementTuning::kDistance, true);
   }
   counts.links = scans.counts;
   counts.misfit_before = before.misfit();

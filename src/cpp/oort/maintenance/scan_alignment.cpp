@@ -6,34 +6,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "oort/maintenance/tuning.hpp"
+
 namespace oort {
 namespace {
-
-// Pieces of one surface begin anywhere, so their middles are up to a length apart along it.
-constexpr double kAlong = 0.2;   // [m]
-constexpr double kFacing = 0.9;  // cosine (26 degrees)
-
-// How far apart pieces of one surface are: noise, and what a wall's range is off by that changes with distance and
-// incidence. Beyond kRobust it is likely to be another surface.
-constexpr double kSigma = 0.02;   // [m]
-constexpr double kRobust = 0.04;  // [m]
-
-// Each piece takes part in several pairs of scans, and neighbouring ones share their error.
-constexpr double kShare = 0.25;
-
-// A direction is open if the information on it is less than this share of what walls across it would give: crooked
-// normals give a corridor's axis about a hundredth. A radian counts as a metre.
-constexpr double kLeastCurvature = 0.03;
 
 /// The nearest piece of the same surface, if there is one.
 const SurfacePiece* counterpart(const SurfacePiece& piece, const std::vector<SurfacePiece>& others,
                                 double max_distance) {
   const SurfacePiece* best = nullptr;
-  double least = max_distance * max_distance + kAlong * kAlong;
+  double least = max_distance * max_distance + RefinementTuning::kMaxAlong * RefinementTuning::kMaxAlong;
   for (const SurfacePiece& other : others) {
     const Eigen::Vector2d d = piece.center - other.center;
     const double distance = d.squaredNorm();
-    if (distance >= least || other.normal.dot(piece.normal) < kFacing) continue;
+    if (distance >= least || other.normal.dot(piece.normal) < RefinementTuning::kMinCosine) continue;
     if (std::abs(other.normal.dot(d)) > max_distance) continue;
     least = distance;
     best = &other;
@@ -55,7 +41,7 @@ ScanAlignment align(const std::vector<SurfacePiece>& pieces_i, const std::vector
     const double e = n.dot(piece.center - other->center);
     const Eigen::Vector2d arm = piece.center - T_i_j.translation();
     const Eigen::Vector3d J(n.x(), n.y(), n.y() * arm.x() - n.x() * arm.y());
-    const double near = 1.0 / (1.0 + (e / kRobust) * (e / kRobust));
+    const double near = 1.0 / (1.0 + (e / RefinementTuning::kRobustScale) * (e / RefinementTuning::kRobustScale));
     const double w = near * near;
     H += w * J * J.transpose();
     gradient += w * e * J;
@@ -69,10 +55,11 @@ ScanAlignment align(const std::vector<SurfacePiece>& pieces_i, const std::vector
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(H);
   for (int k = 0; k < 3; ++k) {
     const double curvature = eigen.eigenvalues()(k);
-    if (curvature < kLeastCurvature * result.weight) continue;
+    if (curvature < RefinementTuning::kMinCurvature * result.weight) continue;
     const Eigen::Vector3d v = eigen.eigenvectors().col(k);
     result.correction -= v * (v.dot(gradient) / curvature);
-    result.W.row(k) = std::sqrt(kShare * curvature) / kSigma * v.transpose();
+    result.W.row(k) =
+        std::sqrt(RefinementTuning::kInformationShare * curvature) / RefinementTuning::kPieceSigma * v.transpose();
   }
   return result;
 }

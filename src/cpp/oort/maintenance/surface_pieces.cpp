@@ -7,21 +7,17 @@
 #include <cstddef>
 #include <optional>
 
+#include "oort/geometry/tuning.hpp"
+#include "oort/maintenance/tuning.hpp"
+
 namespace oort {
 namespace {
 
-constexpr double kLength = 0.2;     // [m] of a piece
-constexpr double kMinLength = 0.1;  // [m] of what is left at the end of a surface
-constexpr double kMaxLength = 0.6;  // [m]; returns so sparse are no line
-constexpr double kMaxGap = 0.3;     // [m]; returns farther apart are of different surfaces
-constexpr std::size_t kMinReturns = 3;
-constexpr double kMaxThickness = 0.2;  // of a line, as a share of its length (standard deviations)
-
 /// The straight line through some returns, if it is one.
 std::optional<SurfacePiece> line_through(const std::vector<Eigen::Vector2d>& points) {
-  if (points.size() < kMinReturns) return std::nullopt;
+  if (points.size() < RefinementTuning::kMinPieceReturns) return std::nullopt;
   const double length = (points.back() - points.front()).norm();
-  if (length < kMinLength || length > kMaxLength) return std::nullopt;
+  if (length < RefinementTuning::kMinPieceLength || length > RefinementTuning::kMaxPieceLength) return std::nullopt;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : points) mean += p;
   mean /= static_cast<double>(points.size());
@@ -29,7 +25,10 @@ std::optional<SurfacePiece> line_through(const std::vector<Eigen::Vector2d>& poi
   for (const Eigen::Vector2d& p : points) scatter += (p - mean) * (p - mean).transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
   eigen.computeDirect(scatter);
-  if (eigen.eigenvalues()(0) > kMaxThickness * kMaxThickness * eigen.eigenvalues()(1)) return std::nullopt;
+  if (eigen.eigenvalues()(0) >
+      RefinementTuning::kMaxPieceThickness * RefinementTuning::kMaxPieceThickness * eigen.eigenvalues()(1)) {
+    return std::nullopt;
+  }
   Eigen::Vector2d normal = eigen.eigenvectors().col(0);
   if (normal.dot(mean) > 0.0) normal = -normal;  // the sensor is at the origin
   return SurfacePiece{mean, normal};
@@ -47,9 +46,12 @@ std::vector<SurfacePiece> surface_pieces(const PointCloud& cloud) {
   for (const Point2& point : cloud.points) {
     if (!point.is_return()) continue;
     const Eigen::Vector2d p(point.x, point.y);
-    if (!run.empty() && (p - run.back()).norm() > kMaxGap) end_piece();
+    if (!run.empty() && (p - run.back()).norm() > GeometryTuning::kMaxSurfaceGap) end_piece();
     run.push_back(p);
-    if (run.size() >= kMinReturns && (p - run.front()).norm() >= kLength) end_piece();
+    if (run.size() >= RefinementTuning::kMinPieceReturns &&
+        (p - run.front()).norm() >= RefinementTuning::kPieceLength) {
+      end_piece();
+    }
   }
   end_piece();
   return pieces;

@@ -7,17 +7,16 @@
 #include <map>
 #include <optional>
 
+#include "oort/maintenance/tuning.hpp"
+
 namespace oort {
 namespace {
-
-constexpr double kReach = 1.5;            // [m] between the middles of what two nodes saw
-constexpr std::size_t kMostPartners = 8;  // of a node
-constexpr std::size_t kSpacing = 2;       // partners are at least so many nodes apart
 
 using Cell = std::pair<long, long>;
 
 Cell cell_of(const Eigen::Vector2d& p) {
-  return {std::lround(std::floor(p.x() / kReach)), std::lround(std::floor(p.y() / kReach))};
+  return {std::lround(std::floor(p.x() / RefinementTuning::kPairReach)),
+          std::lround(std::floor(p.y() / RefinementTuning::kPairReach))};
 }
 
 /// The middle of what a node saw, in the map; none if it saw no surface.
@@ -33,9 +32,9 @@ std::vector<std::size_t> spread_out(std::vector<std::pair<double, std::size_t>> 
   std::sort(by_distance.begin(), by_distance.end());
   std::vector<std::size_t> chosen;
   for (const auto& [distance, node] : by_distance) {
-    if (chosen.size() == kMostPartners) break;
+    if (chosen.size() == RefinementTuning::kMaxPartners) break;
     const auto is_close = [node = node](std::size_t other) {
-      return (other > node ? other - node : node - other) < kSpacing;
+      return (other > node ? other - node : node - other) < RefinementTuning::kPartnerSpacing;
     };
     if (std::none_of(chosen.begin(), chosen.end(), is_close)) chosen.push_back(node);
   }
@@ -59,7 +58,7 @@ std::vector<ViewPair> view_pairs(const std::vector<Pose2>& poses,
         if (others == earlier.end()) continue;
         for (const auto& [other, its_view] : others->second) {
           const double distance = (its_view - *view).norm();
-          if (distance < kReach) near.emplace_back(distance, other);
+          if (distance < RefinementTuning::kPairReach) near.emplace_back(distance, other);
         }
       }
     }

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "oort/map/tuning.hpp"
+
 namespace oort {
 namespace {
-
-// Standard deviation of x or y from which on what is seen from two nodes no longer fits together.
-constexpr double kMaxDeviation = 0.2;  // [m]
 
 /// What the chain says of the node `id + 1` as seen from `id`.
 std::optional<Pose2> step_after(const Map& map, const Chains& chains, std::uint64_t id) {
@@ -17,7 +16,9 @@ std::optional<Pose2> step_after(const Map& map, const Chains& chains, std::uint6
   for (const Edge& edge : map.graph.edges) {
     if (edge.i != id || edge.j != id + 1) continue;
     const Eigen::Matrix3d& covariance = edge.constraint.covariance;
-    if (std::max(covariance(0, 0), covariance(1, 1)) > kMaxDeviation * kMaxDeviation) return std::nullopt;
+    if (std::max(covariance(0, 0), covariance(1, 1)) > MapTuning::kMaxWalkDeviation * MapTuning::kMaxWalkDeviation) {
+      return std::nullopt;
+    }
     return edge.constraint.T_i_j;
   }
   return std::nullopt;

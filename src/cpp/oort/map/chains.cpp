@@ -4,15 +4,13 @@
 
 #include <algorithm>
 
+#include "oort/map/tuning.hpp"
+
 namespace oort {
 namespace {
 
-// A link this uncertain (standard deviation of x or y) joins no submap: pauses and resumes inflate to metres, while
-// a link that follows odometry stays below a decimetre or two.
-constexpr double kMaxRigidDeviation = 0.5;  // [m]
-
 bool is_rigid(const Eigen::Matrix3d& covariance) {
-  return std::max(covariance(0, 0), covariance(1, 1)) < kMaxRigidDeviation * kMaxRigidDeviation;
+  return std::max(covariance(0, 0), covariance(1, 1)) < MapTuning::kMaxRigidDeviation * MapTuning::kMaxRigidDeviation;
 }
 
 }  // namespace

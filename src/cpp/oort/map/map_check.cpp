@@ -7,11 +7,10 @@
 #include <limits>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/map/tuning.hpp"
 
 namespace oort {
 namespace {
-
-constexpr double kMaxCoordinate = 1e5;  // [m]
 
 using Defect = std::optional<std::string>;
 
@@ -132,7 +131,7 @@ Defect find_defect(const Map& map) {
 }
 
 void check_reach(const Pose2& pose, const std::string& what, const std::string& advice) {
-  if (!is_finite(pose) || std::max(std::abs(pose.x), std::abs(pose.y)) > kMaxCoordinate) {
+  if (!is_finite(pose) || std::max(std::abs(pose.x), std::abs(pose.y)) > MapTuning::kMaxCoordinate) {
     throw InputError(what + " is not finite or more than 100 km off; " + advice);
   }
 }

@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "oort/graph/tuning.hpp"
 #include "oort/maintenance/refinement.hpp"
+#include "oort/mapper/tuning.hpp"
 
 namespace oort {
-namespace {
-
-constexpr int kIterationsWhileMapping = 15;
-constexpr int kFinalIterations = 100;
-
-}  // namespace
 
 GlobalSlam::GlobalSlam(const Parameters& parameters)
     : parameters_(parameters), loops_(parameters), docks_(parameters) {}
@@ -71,7 +67,7 @@ Correction GlobalSlam::finish() {
     const Correction some = found(loops_.work_off(map(), map_.chains(), counts_.loops, closure_log_));
     all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
   }
-  if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(kFinalIterations);
+  if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(MapperTuning::kFinalIterations);
   if (parameters_.final_refinement) counts_.refinement = refine(map_.edit());
   all.solution = map_.solution();
   all.counts = counts_;
@@ -87,7 +83,7 @@ Correction GlobalSlam::link_dock(const std::vector<Location>& locations) {
   }
   if (!closure) return {{}, std::nullopt, counts_};
   found({*closure});
-  solve_anew(kIterationsWhileMapping);
+  solve_anew(MapperTuning::kIterations);
   Correction correction = solved();
   correction.closures = {*closure};
   return correction;
@@ -105,7 +101,7 @@ Correction GlobalSlam::solved() {
 
 void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {
   if (extent == SolveSchedule::Extent::kNewest && solve_newest(meter)) return;
-  solve(kIterationsWhileMapping, 0, meter);
+  solve(MapperTuning::kIterations, 0, meter);
   schedule_.solved_all(map_.node_count());
 }
 
@@ -113,9 +109,9 @@ void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {
 bool GlobalSlam::solve_newest(WorkMeter* meter) {
   const auto closures = static_cast<std::ptrdiff_t>(schedule_.pending());
   const std::vector<double> chi2 =
-      solve(kIterationsWhileMapping, map_.node_count() - SolveSchedule::kNewestNodes, meter).chi_squared;
+      solve(MapperTuning::kIterations, map_.node_count() - MapperTuning::kNewestNodes, meter).chi_squared;
   schedule_.solved_newest();
-  const auto disagrees = [](double value) { return value > kAgreement; };
+  const auto disagrees = [](double value) { return value > GraphTuning::kAgreement; };
   return 2 * std::count_if(chi2.end() - closures, chi2.end(), disagrees) <= closures;
 }
 

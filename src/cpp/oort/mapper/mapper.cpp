@@ -6,20 +6,14 @@
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/geometry/work_meter.hpp"
 #include "oort/map/locations.hpp"
 #include "oort/map/map_check.hpp"
+#include "oort/mapper/tuning.hpp"
 #include "oort/parameters/table.hpp"
 
 namespace oort {
 namespace {
-
-// The share of the time between scans that global SLAM may count on, on a laptop. On a machine five times slower it is
-// half a core.
-constexpr double kGlobalShare = 0.1;
-constexpr double kUnitsPerSecond = 1e6;
-// Of the time between scans [s]: what the stamps say is believed within these.
-constexpr double kLeastInterval = 0.02;
-constexpr double kMostInterval = 0.5;
 
 Parameters checked(const Parameters& parameters) {
   check_parameters(parameters);
@@ -185,11 +179,11 @@ void Mapper::count_tracking(TrackingState state) {
 
 /// What global SLAM may do until the next scan, by the shorter of the last two intervals: a pause is no credit.
 std::uint64_t Mapper::work_granted(double time) {
-  const double interval = std::clamp(time - last_time_, kLeastInterval, kMostInterval);
-  const double shorter = last_interval_ > 0.0 ? std::min(interval, last_interval_) : kLeastInterval;
+  const double interval = std::clamp(time - last_time_, MapperTuning::kMinInterval, MapperTuning::kMaxInterval);
+  const double shorter = last_interval_ > 0.0 ? std::min(interval, last_interval_) : MapperTuning::kMinInterval;
   last_time_ = time;
   last_interval_ = interval;
-  return static_cast<std::uint64_t>(kGlobalShare * kUnitsPerSecond * shorter);
+  return static_cast<std::uint64_t>(MapperTuning::kGlobalShare * WorkMeter::kUnitsPerSecond * shorter);
 }
 
 ScanResult Mapper::result(ScanOutcome outcome) const {

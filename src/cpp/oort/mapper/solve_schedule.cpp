@@ -5,23 +5,21 @@
 #include <algorithm>
 
 #include "oort/loop_closure/closure.hpp"
+#include "oort/loop_closure/tuning.hpp"
+#include "oort/mapper/tuning.hpp"
 
 namespace oort {
-namespace {
-
-constexpr std::uint64_t kLeastInterval = 10;  // of progress between solves
-constexpr std::uint64_t kGrowth = 20;         // the graph grows by one part in so many between solves
-
-}  // namespace
 
 void SolveSchedule::add_closure(double surprise) {
   ++pending_;
-  surprised_ = surprised_ || surprise > kSurprise;
+  surprised_ = surprised_ || surprise > LoopClosureTuning::kLargeInnovation;
 }
 
 SolveSchedule::Extent SolveSchedule::due(std::uint64_t size, std::uint64_t progress) const {
   if (pending_ == 0) return Extent::kNothing;
-  if (progress >= progress_at_last_ + std::max(kLeastInterval, size / kGrowth)) return Extent::kAll;
+  if (progress >= progress_at_last_ + std::max(MapperTuning::kMinProgress, size / MapperTuning::kGrowthParts)) {
+    return Extent::kAll;
+  }
   if (!surprised_) return Extent::kNothing;
   return size > large_ ? Extent::kNewest : Extent::kAll;
 }

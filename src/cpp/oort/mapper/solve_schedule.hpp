@@ -3,6 +3,8 @@
 #pragma once
 #include <cstdint>
 
+#include "oort/mapper/tuning.hpp"
+
 namespace oort {
 
 /// When a graph that closures are added to is solved, and how much of it.
@@ -14,10 +16,8 @@ class SolveSchedule {
  public:
   enum class Extent { kNothing, kNewest, kAll };
 
-  static constexpr std::uint64_t kNewestNodes = 1000;  ///< that are moved when a large graph is surprised
-
   /// `large`: from more nodes on, what surprises moves the newest nodes alone.
-  explicit SolveSchedule(std::uint64_t large = kNewestNodes) : large_(large) {}
+  explicit SolveSchedule(std::uint64_t large = MapperTuning::kNewestNodes) : large_(large) {}
 
   /// A closure was added, this far from where the graph expected it (squared Mahalanobis distance).
   void add_closure(double surprise);

@@ -10,12 +10,10 @@
 
 #include "oort/matching/grid_score.hpp"
 #include "oort/matching/internal/matching_costs.hpp"
+#include "oort/matching/tuning.hpp"
 
 namespace oort {
 namespace {
-
-// Added to J^T J so that a direction that nothing holds has a large variance and no infinite one.
-constexpr double kLeastInformation = 1e-6;
 
 ceres::Solver::Options solver_options(const CeresSolverParameters& parameters) {
   ceres::Solver::Options options;
@@ -61,7 +59,8 @@ ScanMatch CeresMatcher::match(const Points& points, const Pose2& guess, const Ei
   match.pose = {pose[0], pose[1], wrap_angle(pose[2])};
   score_pose(grid_, points, match);
   const Eigen::Matrix3d seen = normal_matrix(occupied, pose);
-  const Eigen::Matrix3d held = seen + normal_matrix(delta, pose) + kLeastInformation * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d held =
+      seen + normal_matrix(delta, pose) + MatchingTuning::kMinInformation * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d inverse = held.inverse();
   match.information = seen / p.covariance_scale;
   match.covariance = 0.5 * p.covariance_scale * (inverse + inverse.transpose());

@@ -12,12 +12,12 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/matching/grid_score.hpp"
+#include "oort/matching/tuning.hpp"
 
 namespace oort {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kSamples = 3;  // steps each way from the best pose that its covariance is taken from
 
 /// Poses at one heading, of which the shifts of those that see nothing of the grid are left out: from `low` to `high`
 /// cells, both included.
@@ -178,9 +178,9 @@ void FastCorrelativeMatcher::describe(const Points& points, double turn, ScanMat
   const double step = grid.limits().resolution;
   score_pose(grid, points, match);
   SampleCovariance samples(match.score, points.size());
-  for (int k = -kSamples; k <= kSamples; ++k) {
-    for (int j = -kSamples; j <= kSamples; ++j) {
-      for (int i = -kSamples; i <= kSamples; ++i) {
+  for (int k = -MatchingTuning::kCovarianceSteps; k <= MatchingTuning::kCovarianceSteps; ++k) {
+    for (int j = -MatchingTuning::kCovarianceSteps; j <= MatchingTuning::kCovarianceSteps; ++j) {
+      for (int i = -MatchingTuning::kCovarianceSteps; i <= MatchingTuning::kCovarianceSteps; ++i) {
         const Eigen::Vector3d offset(i * step, j * step, k * turn);
         ScanMatch sample;
         sample.pose = {match.pose.x + offset.x(), match.pose.y + offset.y(), match.pose.theta + offset.z()};

@@ -6,13 +6,11 @@
 #include <cmath>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/matching/tuning.hpp"
 
 namespace oort {
 namespace {
 
-constexpr double kOccupied = 0.5;
-constexpr double kNearestCells =
-    3.0;  // points nearer than this count as being so far, or the step would be a half turn
 constexpr double kNegligible = -40.0;  // e to this is below the precision of the sums
 constexpr double kFarthest = 1e6;      // [m]; cells are counted with int
 
@@ -30,7 +28,7 @@ std::vector<CellIndex> cells_of(const Points& points, const Pose2& T_grid_sensor
 }
 
 double angular_step(const Points& points, double resolution) {
-  double farthest = kNearestCells * resolution;
+  double farthest = MatchingTuning::kNearestCells * resolution;
   for (const Eigen::Vector2d& point : points) farthest = std::max(farthest, point.norm());
   return std::acos(1.0 - resolution * resolution / (2.0 * farthest * farthest));
 }
@@ -41,7 +39,7 @@ void score_pose(const ProbabilityGrid& grid, const Points& points, ScanMatch& ma
   for (const CellIndex& cell : cells_of(points, match.pose, grid.limits())) {
     const double probability = grid.probability(cell.x(), cell.y());
     sum += probability;
-    if (probability > kOccupied) ++hits;
+    if (probability > MatchingTuning::kOccupied) ++hits;
   }
   match.score = sum / static_cast<double>(points.size());
   match.hit_fraction = static_cast<double>(hits) / static_cast<double>(points.size());

@@ -12,31 +12,10 @@
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
 #include "oort/merging/internal/map_views.hpp"
+#include "oort/merging/tuning.hpp"
 
 namespace oort {
 namespace {
-
-// How much is looked for.
-constexpr std::size_t kMaxViews = 40;
-constexpr double kSpacing = 0.7;             // [m] between views
-constexpr std::uint64_t kNodesOfAView = 11;  // some 2 m of way
-constexpr std::size_t kMaxPlacements = 8;
-
-// Two placements are the same if they put a view to within this of one another: maps are bent.
-constexpr double kSame = 0.5;        // [m]
-constexpr double kSameAngle = 0.15;  // [rad]
-
-// Where a view is matched, about its place.
-constexpr double kNear = 0.5;        // [m]
-constexpr double kNearAngle = 0.15;  // [rad]
-constexpr double kVoxel = 0.1;       // [m]
-
-// Shares of the returns of a view.
-constexpr double kFits = 0.75;        // support of one that fits
-constexpr double kContradicts = 0.3;  // what cannot be, of one that contradicts
-
-// Views that must fit. One or two scenes look like one or two of some other home now and then (1 of 30 tries).
-constexpr int kNeeded = 3;
 
 /// Where the query map, whose views are looked for, may lie on the target, the other map.
 struct Vote {
@@ -46,7 +25,8 @@ struct Vote {
 
 bool near(const Pose2& a, const Pose2& b) {
   const Pose2 difference = between(a, b);
-  return difference.translation().norm() <= kSame && std::abs(difference.theta) <= kSameAngle;
+  return difference.translation().norm() <= MergingTuning::kSamePlacement &&
+         std::abs(difference.theta) <= MergingTuning::kSamePlacementAngle;
 }
 
 /// One map, its views looked for on another.
@@ -58,7 +38,8 @@ class PlacementSearch {
         reference_(std::make_shared<ReferenceMap>(target, parameters)),
         relocalizer_(reference_, parameters),
         matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
-        views_(spread_views(query, Chains::of_map(query), kMaxViews, kSpacing, kNodesOfAView)) {}
+        views_(spread_views(query, Chains::of_map(query), MergingTuning::kMaxViews, MergingTuning::kViewSpacing,
+                            MergingTuning::kNodesPerView)) {}
 
   std::size_t size() const { return views_.size(); }
 
@@ -70,7 +51,7 @@ class PlacementSearch {
     std::sort(ranked.begin(), ranked.end());
     std::vector<Pose2> chosen;
     for (const auto& [count, k] : ranked) {
-      if (chosen.size() == kMaxPlacements) break;
+      if (chosen.size() == MergingTuning::kMaxPlacements) break;
       const Pose2& pose = all[k].T_target_query;
       if (std::none_of(chosen.begin(), chosen.end(), [&](const Pose2& other) { return same(other, pose); })) {
         chosen.push_back(pose);
@@ -98,12 +79,12 @@ class PlacementSearch {
     Support matched;       ///< there
     Support expected;      ///< at the placement itself
 
-    bool fits() const { return matched.value() >= kFits; }
+    bool fits() const { return matched.value() >= MergingTuning::kFits; }
     bool contradicts() const { return cannot_be(matched) && cannot_be(expected); }
 
     /// A wall that was seen from its other side only is nothing impossible.
     static bool cannot_be(const Support& support) {
-      return support.blocked + support.in_free > kContradicts * support.points;
+      return support.blocked + support.in_free > MergingTuning::kContradicts * support.points;
     }
   };
 
@@ -135,8 +116,9 @@ class PlacementSearch {
     std::vector<Opinion> opinions;
     for (std::size_t k = 0; k < views_.size(); ++k) {
       const Pose2 expected = T_target_query * views_[k].T_map_sensor;
-      const frsm::Match match = matcher_.match(reference_->fine(), points_of(views_[k]), to_frsm(expected),
-                                               {kNear, kNear, kNearAngle}, nullptr);
+      const frsm::Match match = matcher_.match(
+          reference_->fine(), points_of(views_[k]), to_frsm(expected),
+          {MergingTuning::kMatchReach, MergingTuning::kMatchReach, MergingTuning::kMatchReachAngle}, nullptr);
       const Pose2 matched = from_frsm(match.pose);
       opinions.push_back({k, matched * inverse(views_[k].T_map_sensor), support(k, matched), support(k, expected)});
     }
@@ -158,7 +140,7 @@ class PlacementSearch {
       append_transformed(returns_of(scan.cloud), between(view.scans.back().T_odom_sensor, scan.T_odom_sensor), points);
     }
     frsm::Points thinned;
-    for (const Eigen::Vector2d& p : voxel_filter(to_points(frsm::drop_invalid(points)), kVoxel)) {
+    for (const Eigen::Vector2d& p : voxel_filter(to_points(frsm::drop_invalid(points)), MergingTuning::kMatchVoxel)) {
       thinned.push_back({p.x(), p.y()});
     }
     return thinned;
@@ -232,7 +214,7 @@ MapSearch find_placements(const Map& a, const Map& b, const Parameters& paramete
   const PlacementSearch search(swap ? b : a, swap ? a : b, parameters);
   MapSearch result;
   result.views = static_cast<int>(search.size());
-  result.needed = only_guesses ? std::min(kNeeded, result.views) : kNeeded;
+  result.needed = only_guesses ? std::min(MergingTuning::kNeededViews, result.views) : MergingTuning::kNeededViews;
   const auto add = [&](const Pose2& T_target_query, const std::string& found_by) {
     MapPlacement placement = search.weigh(T_target_query);
     placement.found_by = found_by;

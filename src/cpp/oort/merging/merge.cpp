@@ -11,28 +11,13 @@
 #include "oort/mapper/mapper.hpp"
 #include "oort/merging/internal/append_map.hpp"
 #include "oort/merging/internal/cross_closures.hpp"
+#include "oort/merging/tuning.hpp"
 
 namespace oort {
 namespace {
 
 constexpr const char* kDock = "dock";  // the namespace of docks, and how a placement was found
 constexpr const char* kGiven = "given";
-constexpr double kSameDock = 0.5;  // [m] between docks that are one
-constexpr int kMaxDockPairs = 9;   // that are tried
-
-// More views must fit than contradict where a map is found, as it may be bent; and so many for each that contradicts
-// once closures have straightened it: furniture is moved.
-constexpr int kFitsPerContradiction = 2;
-
-// Another placement with more than this share of the best one's score is as good.
-constexpr double kAmbiguous = 0.6;
-
-// That at the docks is preferred if its score is at least this share of the best one's.
-constexpr double kAsGood = 0.9;
-
-// Accepted closures across, and the share of them that the solution keeps, without which nothing is believed.
-constexpr std::uint64_t kLeastKept = 3;
-constexpr double kLeastKeptShare = 0.5;
 
 // Of a given place that cannot be.
 const char* const kCheckPlace =
@@ -67,7 +52,9 @@ std::vector<MapPlacement> dock_guesses(const Map& a, const Map& b) {
   std::vector<MapPlacement> guesses;
   for (const Location& of_a : a.locations) {
     for (const Location& of_b : b.locations) {
-      if (of_a.name_space != kDock || of_b.name_space != kDock || guesses.size() == kMaxDockPairs) continue;
+      if (of_a.name_space != kDock || of_b.name_space != kDock || guesses.size() == MergingTuning::kMaxDockPairs) {
+        continue;
+      }
       MapPlacement guess;
       guess.T_a_b = pose_of(a, of_a) * inverse(pose_of(b, of_b));
       guess.found_by = kDock;
@@ -106,13 +93,15 @@ MapPlacement chosen(const MapSearch& search) {
   if (search.placements.empty() || !is_believed(search.placements.front(), search)) refuse(search);
   std::vector<MapPlacement> rivals;
   for (const MapPlacement& placement : search.placements) {
-    if (placement.score() > kAmbiguous * search.placements.front().score()) rivals.push_back(placement);
+    if (placement.score() > MergingTuning::kAmbiguousShare * search.placements.front().score()) {
+      rivals.push_back(placement);
+    }
   }
   if (rivals.size() == 1) return rivals.front();
   const auto is_at_dock = [](const MapPlacement& placement) { return placement.found_by == kDock; };
   const auto at_dock = std::find_if(rivals.begin(), rivals.end(), is_at_dock);
   if (std::count_if(rivals.begin(), rivals.end(), is_at_dock) == 1 && is_believed(*at_dock, search) &&
-      at_dock->score() >= kAsGood * rivals.front().score()) {
+      at_dock->score() >= MergingTuning::kDockShare * rivals.front().score()) {
     return *at_dock;
   }
   throw InputError("merge: the second map fits the first in more than one place: at the best " +
@@ -150,15 +139,16 @@ Map solved(Map map, const Map& joined, std::uint64_t first) {
 void confirm(const Map& a, const Map& b, const Merged& merged, const Parameters& parameters) {
   const std::string advice = what_to_do(merged.placement.found_by == kGiven);
   const std::string what = "merge: where the second map was found on the first is not confirmed: ";
-  if (merged.across_kept < kLeastKept ||
-      static_cast<double>(merged.across_kept) < kLeastKeptShare * static_cast<double>(merged.across.accepted)) {
+  if (merged.across_kept < MergingTuning::kMinKept ||
+      static_cast<double>(merged.across_kept) <
+          MergingTuning::kMinKeptShare * static_cast<double>(merged.across.accepted)) {
     throw InputError(what + "of " + std::to_string(merged.across.accepted) + " closures the solution keeps " +
                      std::to_string(merged.across_kept) + advice);
   }
   const MapSearch search = find_placements(solved(a, merged.map, 0), solved(b, merged.map, merged.first_node_b),
                                            parameters, {MapPlacement{}}, true);
   const MapPlacement& p = search.placements.front();
-  if (p.fits < search.needed || p.fits < kFitsPerContradiction * p.contradicts) {
+  if (p.fits < search.needed || p.fits < MergingTuning::kFitsPerContradiction * p.contradicts) {
     throw InputError(what + "once both are solved together " + evidence(p, search) + advice);
   }
 }
@@ -177,7 +167,7 @@ std::vector<DroppedLocation> drop_doubles(Map& map, std::uint64_t first_node_b) 
     };
     const auto same = std::find_if(of_a.begin(), of_a.end(), [&](const Location& other) {
       if (other.name_space != location.name_space) return false;
-      return other.id == location.id || (location.name_space == kDock && distance(other) <= kSameDock);
+      return other.id == location.id || (location.name_space == kDock && distance(other) <= MergingTuning::kSameDock);
     });
     if (same == of_a.end()) {
       kept.push_back(location);

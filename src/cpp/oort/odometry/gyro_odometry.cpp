@@ -8,46 +8,20 @@
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/odometry/tuning.hpp"
 
 namespace oort {
-namespace {
-
-constexpr double kPatience = 1.0;  // [s] that odometry waits for a gyro that is behind
-constexpr double kSetBack = 1.0;   // [s] by which a message is older than the last where the clock was set back
-constexpr double kKept = 20.0;     // [s] of rates that are kept while no odometry comes
-constexpr double kMostGap = 0.1;   // [s] between two rates; over a longer one the turn may have been anything
-
-// Slower, the base stands: wheels that stand are seen at rest, but for noise of stamps and of encoders.
-constexpr double kStillSpeed = 0.005;  // [m/s]
-constexpr double kStillTurn = 0.005;   // [rad/s]
-constexpr double kSettling = 0.5;      // [s] that it takes to come to rest
-
-constexpr double kLeastLearned = 1.0;  // [s]
-constexpr double kMostLearned = 60.0;  // [s]; a bias drifts with the gyro's warmth
-constexpr double kMostBias = 0.2;      // [rad/s]; more is a robot that somebody turns
-constexpr double kMostChange = 0.05;   // [rad/s], the same once the bias is known
-
-// A bias that was learned wrong, as the robot was turned by hand or the gyro warmed up: what it tells at rest instead
-// for so long, and evenly as no hand turns, is the bias.
-constexpr double kRelearned = 5.0;  // [s]
-constexpr double kEvenness = 0.05;  // [rad/s]
-
-// A gyro that says exactly "no turn" for so long while odometry turns is broken: a sound one has noise.
-constexpr double kDead = 1.0;     // [s]
-constexpr double kNoTurn = 1e-6;  // [rad/s]
-
-}  // namespace
 
 void GyroOdometry::add_gyro(double time, double yaw_rate) {
   if (!std::isfinite(time) || !std::isfinite(yaw_rate)) {
     throw InputError("gyro: a time or yaw rate is not a finite number; check what publishes the IMU's messages");
   }
   if (!rates_.empty() && time <= rates_.back().time) {
-    if (time >= rates_.back().time - kSetBack) return;
+    if (time >= rates_.back().time - OdometryTuning::kSetBack) return;
     rates_.clear();  // or they would shut out all that comes
   }
   rates_.push_back({time, yaw_rate});
-  while (rates_.front().time < time - kKept) rates_.pop_front();
+  while (rates_.front().time < time - OdometryTuning::kKeptRates) rates_.pop_front();
   settle();
 }
 
@@ -74,18 +48,18 @@ void GyroOdometry::set_back(double time) {
   flush();
   settled_.clear();
   newest_odometry_ = -std::numeric_limits<double>::infinity();
-  if (!rates_.empty() && rates_.back().time > time + kSetBack) rates_.clear();
+  if (!rates_.empty() && rates_.back().time > time + OdometryTuning::kSetBack) rates_.clear();
 }
 
 std::optional<double> GyroOdometry::bias() const {
-  return learned_ >= kLeastLearned ? std::make_optional(bias_) : std::nullopt;
+  return learned_ >= OdometryTuning::kMinLearned ? std::make_optional(bias_) : std::nullopt;
 }
 
 void GyroOdometry::settle() {
   while (!waiting_.empty()) {
     const double time = waiting_.front().time;
     const bool is_covered = !rates_.empty() && rates_.back().time >= time;
-    if (!is_covered && newest_odometry_ <= time + kPatience) return;
+    if (!is_covered && newest_odometry_ <= time + OdometryTuning::kPatience) return;
     step(waiting_.front());
     waiting_.pop_front();
   }
@@ -100,13 +74,14 @@ void GyroOdometry::step(const TimedPose& now) {
   } else {
     Pose2 motion = between(last_->pose, now.pose);
     const double duration = now.time - last_->time;
-    const bool is_still =
-        motion.translation().norm() <= kStillSpeed * duration && std::abs(motion.theta) <= kStillTurn * duration;
+    const bool is_still = motion.translation().norm() <= OdometryTuning::kStandingSpeed * duration &&
+                          std::abs(motion.theta) <= OdometryTuning::kStandingTurn * duration;
     still_ = is_still ? still_ + duration : 0.0;
     const std::optional<double> turn = integral(last_->time, now.time);
-    if (turn && still_ > kSettling) learn_bias(*turn / duration, duration);
+    if (turn && still_ > OdometryTuning::kSettling) learn_bias(*turn / duration, duration);
     const bool is_dead = is_silent(turn, motion.theta, duration);
-    const bool is_used = turn && bias() && !is_dead && !(is_still && std::abs(*turn / duration - bias_) <= kMostChange);
+    const bool is_used = turn && bias() && !is_dead &&
+                         !(is_still && std::abs(*turn / duration - bias_) <= OdometryTuning::kMaxBiasChange);
     if (is_used) {
       const double correction = wrap_angle(*turn - bias_ * duration - motion.theta);
       const Eigen::Vector2d way = rotation(0.5 * correction) * motion.translation();  // the chord of the other arc
@@ -120,19 +95,21 @@ void GyroOdometry::step(const TimedPose& now) {
 }
 
 bool GyroOdometry::is_silent(const std::optional<double>& turn, double told_by_odometry, double duration) {
-  if (std::abs(told_by_odometry) <= kMostChange * duration) return silent_ >= kDead;
-  const bool says_nothing = turn && std::abs(*turn - bias_ * duration) <= kNoTurn * duration;
+  if (std::abs(told_by_odometry) <= OdometryTuning::kMaxBiasChange * duration) return silent_ >= OdometryTuning::kDead;
+  const bool says_nothing = turn && std::abs(*turn - bias_ * duration) <= OdometryTuning::kNoTurn * duration;
   silent_ = says_nothing ? silent_ + duration : 0.0;
-  return silent_ >= kDead;
+  return silent_ >= OdometryTuning::kDead;
 }
 
 // A mean over the time that the base stood, the latest minute of it.
 void GyroOdometry::learn_bias(double mean_rate, double duration) {
-  const bool is_contrary = std::abs(mean_rate - bias_) > (bias() ? kMostChange : kMostBias);
-  if (is_contrary && std::abs(mean_rate - contrary_) <= kEvenness && std::abs(mean_rate) <= kMostBias) {
+  const bool is_contrary =
+      std::abs(mean_rate - bias_) > (bias() ? OdometryTuning::kMaxBiasChange : OdometryTuning::kMaxBias);
+  if (is_contrary && std::abs(mean_rate - contrary_) <= OdometryTuning::kEvenness &&
+      std::abs(mean_rate) <= OdometryTuning::kMaxBias) {
     contrary_for_ += duration;
     contrary_ += (mean_rate - contrary_) * std::min(1.0, duration / contrary_for_);
-    if (contrary_for_ < kRelearned) return;
+    if (contrary_for_ < OdometryTuning::kRelearning) return;
     bias_ = contrary_;
     learned_ = std::exchange(contrary_for_, 0.0);
     return;
@@ -140,7 +117,7 @@ void GyroOdometry::learn_bias(double mean_rate, double duration) {
   contrary_ = mean_rate;
   contrary_for_ = 0.0;
   if (is_contrary) return;
-  learned_ = std::min(learned_ + duration, kMostLearned);
+  learned_ = std::min(learned_ + duration, OdometryTuning::kMaxLearned);
   bias_ += (mean_rate - bias_) * std::min(1.0, duration / learned_);
 }
 
@@ -153,7 +130,7 @@ std::optional<double> GyroOdometry::integral(double begin, double end) {
     const Rate& a = rates_[i];
     const Rate& b = rates_[i + 1];
     const double span = b.time - a.time;
-    if (span > kMostGap) return std::nullopt;
+    if (span > OdometryTuning::kMaxRateGap) return std::nullopt;
     const double from = std::max(a.time, begin);
     const double to = std::min(b.time, end);
     const auto at = [&](double t) { return a.value + (b.value - a.value) * (t - a.time) / span; };

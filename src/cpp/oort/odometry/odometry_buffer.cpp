@@ -6,16 +6,9 @@
 #include <cmath>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/odometry/tuning.hpp"
 
 namespace oort {
-namespace {
-
-// How long the motion lasts that an extrapolation goes on with: shorter, the noise of stamps and poses counts too much;
-// longer, it is not how the base moves now.
-constexpr double kLeastSpan = 0.05;  // [s]
-constexpr double kMostSpan = 0.5;    // [s]
-
-}  // namespace
 
 OdometryBuffer::OdometryBuffer(double horizon) : horizon_(horizon) {}
 
@@ -52,8 +45,8 @@ std::optional<Pose2> OdometryBuffer::extrapolate(double time) const {
   const Sample& newest = samples_.back();
   for (auto sample = std::next(samples_.rbegin()); sample != samples_.rend(); ++sample) {
     const double span = newest.time - sample->time;
-    if (span > kMostSpan) break;
-    if (span < kLeastSpan) continue;
+    if (span > OdometryTuning::kMaxSpan) break;
+    if (span < OdometryTuning::kMinSpan) continue;
     return newest.pose * along_arc(between(sample->pose, newest.pose), (time - newest.time) / span);
   }
   return std::nullopt;

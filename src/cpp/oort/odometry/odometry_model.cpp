@@ -5,23 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "oort/odometry/tuning.hpp"
+
 namespace oort {
 namespace {
-// The model counts as so many steps at first, and the newest step as one of so many later on.
-constexpr int kFirstSteps = 10;
-constexpr int kMostSteps = 100;
-
-// A single step says no more than this about the variance: a slip of the wheels is not how they always are.
-constexpr double kMostRatio = 25.0;
-constexpr double kMostFactor = 9.0;  // on variances
-
-// Scales are believed to be 1 as much as after this many squared metres and radians of steps, and are held near it.
-constexpr double kFirstWays = 1.0;
-constexpr double kFirstTurns = 2.0;
-constexpr double kMostWays = 10.0;
-constexpr double kMostTurns = 20.0;
-constexpr double kMostOff = 0.1;
-constexpr double kStraight = 0.2;  // [rad]; turning more, the sensor's way is not the wheels'
 
 double square(double value) {
   return value * value;
@@ -39,7 +26,11 @@ Eigen::Matrix3d OdometryModel::covariance(const Pose2& T_before_after) const {
 }
 
 LearnedOdometry::LearnedOdometry(const OdometryModel& model, double least)
-    : model_(model), least_(least * least), steps_(kFirstSteps), ways_(kFirstWays), turns_(kFirstTurns) {}
+    : model_(model),
+      least_(least * least),
+      steps_(OdometryTuning::kInitialSteps),
+      ways_(OdometryTuning::kInitialTranslations),
+      turns_(OdometryTuning::kInitialRotations) {}
 
 Eigen::Matrix3d LearnedOdometry::covariance(const Pose2& T_before_after) const {
   Eigen::Matrix3d covariance = model_.covariance(T_before_after);
@@ -52,26 +43,28 @@ void LearnedOdometry::learn(const Pose2& T_before_after, const Pose2& T_odometry
   if (least_ >= 1.0) return;
   const Eigen::Matrix3d expected = model_.covariance(T_before_after);
   const auto follow = [&](double& factor, double ratio) {
-    factor += (std::min(ratio, kMostRatio) - factor) / (steps_ + 1);
-    factor = std::clamp(factor, least_, kMostFactor);
+    factor += (std::min(ratio, OdometryTuning::kMaxVarianceRatio) - factor) / (steps_ + 1);
+    factor = std::clamp(factor, least_, OdometryTuning::kMaxVarianceFactor);
   };
   follow(translation_, T_odometry_match.translation().squaredNorm() / expected.topLeftCorner<2, 2>().trace());
   follow(rotation_, square(T_odometry_match.theta) / expected(2, 2));
-  steps_ = std::min(steps_ + 1, kMostSteps);
+  steps_ = std::min(steps_ + 1, OdometryTuning::kMaxSteps);
   // Least squares of match = scale * measured, one step after the other.
   const Pose2 match = T_before_after * T_odometry_match;
   const auto fit = [](double& scale, double& sum, double most, double measured2, double ratio) {
     sum = std::min(sum + measured2, most);
-    scale = std::clamp(scale + measured2 / sum * (ratio - 1.0) * scale, 1.0 - kMostOff, 1.0 + kMostOff);
+    scale = std::clamp(scale + measured2 / sum * (ratio - 1.0) * scale, 1.0 - OdometryTuning::kMaxScaleError,
+                       1.0 + OdometryTuning::kMaxScaleError);
   };
   const double way2 = T_before_after.translation().squaredNorm();
-  if (std::abs(T_before_after.theta) < kStraight && way2 > 0.0) {
+  if (std::abs(T_before_after.theta) < OdometryTuning::kStraight && way2 > 0.0) {
     const double ratio = T_before_after.translation().dot(match.translation()) / way2;
-    fit(way_scale_, ways_, kMostWays, way2 / square(way_scale_), std::clamp(ratio, 1.0 - kMostOff, 1.0 + kMostOff));
+    fit(way_scale_, ways_, OdometryTuning::kMaxTranslations, way2 / square(way_scale_),
+        std::clamp(ratio, 1.0 - OdometryTuning::kMaxScaleError, 1.0 + OdometryTuning::kMaxScaleError));
   }
   if (T_before_after.theta != 0.0) {
     const double ratio = 1.0 + T_odometry_match.theta / T_before_after.theta;
-    fit(turn_scale_, turns_, kMostTurns, square(T_before_after.theta / turn_scale_), ratio);
+    fit(turn_scale_, turns_, OdometryTuning::kMaxRotations, square(T_before_after.theta / turn_scale_), ratio);
   }
 }
 

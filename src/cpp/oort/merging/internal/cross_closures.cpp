@@ -7,28 +7,20 @@
 
 #include "oort/graph/optimizer.hpp"
 #include "oort/local_slam/incremental_graph_builder.hpp"
+#include "oort/local_slam/tuning.hpp"
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
 #include "oort/mapper/solve_schedule.hpp"
+#include "oort/mapper/tuning.hpp"
 #include "oort/merging/internal/append_map.hpp"
+#include "oort/merging/tuning.hpp"
 
 namespace oort {
 namespace {
 
-// How well a view tells where its map lies on the other: while closures are looked for, the joint is known like this.
-constexpr double kJointSigma = 0.15;       // [m]
-constexpr double kJointSigmaTheta = 0.05;  // [rad]
-
-// Afterwards it is as wide as the first link of a session: closures alone say where the chains lie. FRSM's variance of
-// a scan that nothing was matched with, which resume_scanmatch_cov_scale scales, as in
-// mapper/mapper.cpp.
-constexpr double kUnmatchedVariance = 0.1;
-
-constexpr int kIterations = 15;
-
 Edge joint_edge(const Map& map, const Joint& joint) {
   const Pose2 T_before_after = between(map.graph.nodes[joint.before].pose, map.graph.nodes[joint.after].pose);
-  const Eigen::Vector3d sigma(kJointSigma, kJointSigma, kJointSigmaTheta);
+  const Eigen::Vector3d sigma(MergingTuning::kJointSigma, MergingTuning::kJointSigma, MergingTuning::kJointSigmaTheta);
   return {next_edge_id(map.graph),
           joint.before,
           joint.after,
@@ -63,7 +55,7 @@ ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, co
     }
     const SolveSchedule::Extent extent = schedule.due(map.graph.nodes.size(), counts.accepted);
     if (extent == SolveSchedule::Extent::kNothing) continue;
-    OptimizerOptions options = optimizer_options(parameters, kIterations);
+    OptimizerOptions options = optimizer_options(parameters, MapperTuning::kIterations);
     if (extent == SolveSchedule::Extent::kNewest) options.first_free_node = begin;
     optimize(map.graph, options);
     if (extent == SolveSchedule::Extent::kNewest) {
@@ -72,8 +64,10 @@ ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, co
       schedule.solved_all(counts.accepted);
     }
   }
+  // Afterwards the joint is as wide as the first edge of a session: closures alone say where the segments lie.
   const double scale = link_parameters(parameters.incremental_graph_builder).resume_scanmatch_cov_scale;
-  map.graph.edges[link].constraint.covariance = kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
+  map.graph.edges[link].constraint.covariance =
+      LocalSlamTuning::kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
   return counts;
 }
 

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace oort {
+
+/// Constants of maps that were chosen, not derived.
+struct MapTuning {
+  /// [m] Standard deviation of x or y of an edge from which on no submap is drawn over it: pauses and resumed sessions
+  /// inflate to metres, while an edge by odometry stays below a decimetre or two.
+  static constexpr double kMaxRigidDeviation = 0.5;
+
+  /// [m] The same of scans that are matched together as one query (walk_segment), which asks for more.
+  static constexpr double kMaxWalkDeviation = 0.2;
+
+  /// [m] Poses farther from the origin come from a broken input.
+  static constexpr double kMaxCoordinate = 1e5;
+};
+
+}  // namespace oort
