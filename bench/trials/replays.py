@@ -125,9 +125,9 @@ def counts(replayed: Replayed) -> dict[str, float]:
     """What the mapper counted."""
     s = replayed.drive.session.mapper.statistics
     figures: dict[str, float] = {key: s[key] for key in ("scans", "nodes", "odometry_links", "solves")}
-    figures |= {f"refused_{reason}": count for reason, count in s["match_refusals"].items()}
+    figures |= {f"rejected_{reason}": count for reason, count in s["match_rejections"].items()}
     for kind in ("loops", "docks"):
         figures |= {f"{kind}_tried": s[kind]["tried"], f"{kind}_accepted": s[kind]["accepted"]}
-        figures |= {f"{kind}_refused_{reason}": count for reason, count in s[kind]["refused"].items()}
+        figures |= {f"{kind}_rejected_{reason}": count for reason, count in s[kind]["rejected"].items()}
     switches = replayed.drive.session.map.switchable_edges["switch"]
     return figures | {"closures_on": float((switches >= 0.5).sum()), "closures_off": float((switches < 0.5).sum())}

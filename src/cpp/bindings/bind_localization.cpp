@@ -29,7 +29,7 @@ py::array_t<double> array_of(const Eigen::Matrix3d& matrix) {
 py::dict dict_of(const Support& s) {
   py::dict dict;
   dict["points"] = s.points;
-  dict["hits"] = s.hits;
+  dict["inliers"] = s.inliers;
   dict["blocked"] = s.blocked;
   dict["in_free"] = s.in_free;
   dict["surfaces"] = s.surfaces;
@@ -41,7 +41,7 @@ PlacedScan placed_scan(double time, double angle_min, double angle_increment, do
                        const Ranges& ranges, const PoseTuple& T_odom_sensor, const SweepTuple& sweep) {
   const PointCloud cloud = to_point_cloud({time, angle_min, angle_increment, range_min, range_max,
                                            std::vector<float>(ranges.data(), ranges.data() + ranges.size())});
-  return {compensate_motion(cloud, sweep_of(sweep)), pose_of(T_odom_sensor)};
+  return {deskew(cloud, sweep_of(sweep)), pose_of(T_odom_sensor)};
 }
 
 void bind_reference(py::module_& m) {
@@ -91,8 +91,8 @@ py::dict dict_of(const LocalizationStatistics& s) {
   dict["matched"] = s.matched;
   dict["searches"] = s.searches;
   dict["jumps"] = s.jumps;
-  dict["match_refusals"] = dict_of(s.match_rejections);
-  dict["search_refusals"] = dict_of(s.search_rejections);
+  dict["match_rejections"] = dict_of(s.match_rejections);
+  dict["search_rejections"] = dict_of(s.search_rejections);
   return dict;
 }
 

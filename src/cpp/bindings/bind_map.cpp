@@ -93,7 +93,7 @@ py::dict incremental_result_columns(const Map& map) {
       results, [](const auto& r) -> const auto& { return r.covariance; });
   columns["pose"] = poses(
       results, [](const auto& r) -> const auto& { return r.T_target_id; });
-  columns["hit_fraction"] = column<double>(results, [](const auto& r) { return r.hit_fraction; });
+  columns["hit_fraction"] = column<double>(results, [](const auto& r) { return r.inlier_ratio; });
   return columns;
 }
 
@@ -106,7 +106,7 @@ py::dict loop_result_columns(const Map& map) {
       results, [](const auto& r) -> const auto& { return r.T_id_target; });
   columns["covariance"] = covariances(
       results, [](const auto& r) -> const auto& { return r.covariance; });
-  columns["hit_fraction"] = column<double>(results, [](const auto& r) { return r.hit_fraction; });
+  columns["hit_fraction"] = column<double>(results, [](const auto& r) { return r.inlier_ratio; });
   return columns;
 }
 

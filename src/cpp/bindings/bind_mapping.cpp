@@ -20,8 +20,8 @@ const char* name_of(ScanOutcome outcome) {
   switch (outcome) {
     case ScanOutcome::kNode:
       return "node";
-    case ScanOutcome::kCarried:
-      return "carried";
+    case ScanOutcome::kLocated:
+      return "located";
     case ScanOutcome::kSkipped:
       return "skipped";
   }
@@ -82,7 +82,7 @@ py::list list_of(const ClosureLog& log) {
   py::list list;
   for (const ClosureAttempt& a : log.attempts()) {
     list.append(
-        py::make_tuple(a.query, a.candidate, text_of(a.rejection), tuple_of(a.T_candidate_query), a.hit_fraction));
+        py::make_tuple(a.query, a.candidate, text_of(a.rejection), tuple_of(a.T_candidate_query), a.inlier_ratio));
   }
   return list;
 }
@@ -107,11 +107,11 @@ py::dict dict_of(const MapperStatistics& statistics) {
   py::dict dict;
   dict["scans"] = statistics.local.scans;
   dict["scans_too_small"] = statistics.local.scans_too_small;
-  dict["scans_matched"] = statistics.chain.scans_matched;
-  dict["nodes"] = statistics.chain.nodes;
-  dict["odometry_links"] = statistics.chain.odometry_links;
-  dict["match_refusals"] = dict_of(statistics.chain.match_rejections);
-  dict["contradictions"] = statistics.chain.contradictions;
+  dict["scans_matched"] = statistics.trajectory.scans_matched;
+  dict["nodes"] = statistics.trajectory.nodes;
+  dict["odometry_links"] = statistics.trajectory.odometry_links;
+  dict["match_rejections"] = dict_of(statistics.trajectory.match_rejections);
+  dict["contradictions"] = statistics.trajectory.contradictions;
   dict["tracking"] = dict_of(statistics.tracking);
   dict["odometry_faults"] = dict_of(statistics.odometry_fault_count, statistics.odometry_faults);
   dict["loops"] = dict_of(statistics.global.loops);
@@ -141,12 +141,12 @@ void bind_scan_result(py::module_& m) {
   py::class_<ScanResult>(m, "ScanResult", "What became of a scan.")
       .def_property_readonly(
           "outcome", [](const ScanResult& r) { return name_of(r.outcome); },
-          "\"node\", \"carried\" (located relative to the last node) or \"skipped\" (too few returns)")
+          "\"node\", \"located\" (relative to the last node) or \"skipped\" (too few returns)")
       .def_readonly("node_id", &ScanResult::node_id, "The node that the pose is relative to, or None.")
       .def_property_readonly(
           "T_node_sensor", [](const ScanResult& r) { return tuple_of(r.T_node_sensor); },
           "The sensor's pose (x, y, theta) seen from the node.")
-      .def_readonly("hit_fraction", &ScanResult::hit_fraction, "Share of the returns that hit the local map.")
+      .def_readonly("inlier_ratio", &ScanResult::inlier_ratio, "Share of the returns that lie on the local map.")
       .def_readonly("was_tracked", &ScanResult::was_tracked, "Whether the scan matcher was asked.")
       .def_property_readonly(
           "rejection", [](const ScanResult& r) { return text_of(r.rejection); },
@@ -183,7 +183,7 @@ py::dict dict_of(const ClosureCounts& counts) {
   py::dict dict;
   dict["tried"] = counts.tried;
   dict["accepted"] = counts.accepted;
-  dict["refused"] = dict_of(counts.rejected);
+  dict["rejected"] = dict_of(counts.rejected);
   return dict;
 }
 
@@ -214,7 +214,7 @@ void bind_mapping(py::module_& m) {
            "Links the current place to the dock. Whether a closure was found.")
       .def(
           "begin_session", [](Mapper& mapper, const PoseTuple& pose) { mapper.begin_session(pose_of(pose)); },
-          py::arg("sensor_on_map"), "The next scan begins a new chain at about this pose of the map.")
+          py::arg("sensor_on_map"), "The next scan begins a new trajectory segment at about this pose of the map.")
       .def("resume_from_paused", &Mapper::resume_from_paused,
            "The next scan makes a node whose link to the last one is very uncertain.")
       .def("finish", &Mapper::finish, py::call_guard<py::gil_scoped_release>(), "Brings the map to its final solution.")
@@ -271,7 +271,7 @@ void bind_mapping(py::module_& m) {
            "Keeps the latest attempts to close loops, so many at most.")
       .def_property_readonly(
           "closure_attempts", [](const Mapper& mapper) { return list_of(mapper.closure_attempts()); },
-          "(query node, candidate node, why it was rejected or None, T_candidate_query, hit fraction) of each kept.");
+          "(query node, candidate node, why it was rejected or None, T_candidate_query, inlier ratio) of each kept.");
 }
 
 }  // namespace oort

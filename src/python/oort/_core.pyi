@@ -314,14 +314,14 @@ class ScanResult:
     def covariance(self) -> NDArray[np.float64]:
         """Of the pose as matched (x, y, theta, along the axes of the map), 3x3; zero if it was not matched."""
     @property
-    def hit_fraction(self) -> float:
-        """Share of the returns that hit the local map."""
+    def inlier_ratio(self) -> float:
+        """Share of the returns that lie on the local map."""
     @property
     def node_id(self) -> int | None:
         """The node that the pose is relative to, or None."""
     @property
     def outcome(self) -> str:
-        """ "node", "carried" (located relative to the last node) or "skipped" (too few returns)"""
+        """ "node", "located" (relative to the last node) or "skipped" (too few returns)"""
     @property
     def rejection(self) -> str | None:
         """Why its match is of no use, for people; None if it is."""
@@ -353,7 +353,7 @@ class Mapper:
         nothing changes then.
         """
     def begin_session(self, sensor_on_map: tuple[float, float, float]) -> None:
-        """The next scan begins a new chain at about this pose of the map."""
+        """The next scan begins a new trajectory segment at about this pose of the map."""
     def create_location(self, name_space: str, id: str, pose: tuple[float, float, float]) -> None:
         """Names a pose of the map."""
     def create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
@@ -377,7 +377,7 @@ class Mapper:
         """Replaces everything by a map from elsewhere."""
     @property
     def closure_attempts(self) -> list[tuple[int, int, str | None, tuple[float, float, float], float]]:
-        """(query node, candidate node, why it was rejected or None, T_candidate_query, hit fraction) of each kept."""
+        """(query node, candidate node, why it was rejected or None, T_candidate_query, inlier ratio) of each kept."""
     @property
     def has_pose(self) -> bool:
         """Whether the sensor's pose in the map is known."""

@@ -93,7 +93,7 @@ def find_start(map_: Map, parameters: Parameters, recording: Recording) -> Pose:
         localizer.add_scan(scan, scan.odometry)
         if localizer.T_map_odom is not None:
             return _pose(compose(compose(localizer.T_map_odom, first.odometry), recording.sensor_on_base))
-    reasons = ", ".join(f"{why} {n}" for why, n in sorted(localizer.statistics["search_refusals"].items()))
+    reasons = ", ".join(f"{why} {n}" for why, n in sorted(localizer.statistics["search_rejections"].items()))
     raise InputError(
         f"{recording.name}: where on the map it begins was not found ({reasons or 'no scan'}); give the pose"
     )

@@ -76,7 +76,7 @@ TEST_F(GridTrackerTest, SaysWhatEachStageFound) {
     const TrackedScan tracked = tracker.track(seen(place), 0.1, {}, {});
     EXPECT_EQ(tracked.first_stage.has_value(), second);
     EXPECT_GT(tracked.covariance(0, 0), 0.0);
-    EXPECT_GT(tracked.hit_fraction, 0.9);
+    EXPECT_GT(tracked.inlier_ratio, 0.9);
   }
 }
 
@@ -189,7 +189,7 @@ class GatesTest : public GridTrackerTest {
     TrackedScan node;
     node.rejection = Rejection::kNone;
     node.T_local_sensor = T_odometry_match;
-    node.hit_fraction = hits;
+    node.inlier_ratio = hits;
     return match_rejection(builder, node, {}, {});
   }
 };
@@ -214,7 +214,7 @@ TEST_F(GatesTest, TheSecondStageHasItsOwn) {
   p = testing::documented_parameters().incremental_graph_builder.cartographer_matcher;
   TrackedScan node;
   node.rejection = Rejection::kNone;
-  node.hit_fraction = 0.7;
+  node.inlier_ratio = 0.7;
   node.first_stage = CoarseMatch{{0.03, 0.0, 0.0}, 0.8};
   const auto verdict = [&](const Pose2& T_odometry_match) {
     node.T_local_sensor = T_odometry_match;

@@ -56,7 +56,7 @@ class LinkTest : public ::testing::Test {
 TEST_F(LinkTest, FollowsTheSensor) {
   follow();
   EXPECT_TRUE(node.usable()) << to_string(node.rejection);
-  EXPECT_GT(node.hit_fraction, 0.9);
+  EXPECT_GT(node.inlier_ratio, 0.9);
   EXPECT_NEAR(node.T_local_sensor.x, motion.x, 0.005);
   EXPECT_NEAR(node.T_local_sensor.y, motion.y, 0.005);
   EXPECT_NEAR(node.T_local_sensor.theta, motion.theta, 0.003);
@@ -109,7 +109,7 @@ TEST_F(LinkTest, DifferencesAreMeasuredAlongTheAxesOfWhereOdometryPutsTheNode) {
 
 TEST_F(LinkTest, MatchWithFewHitsIsRefused) {
   follow();
-  const double hits = node.hit_fraction;
+  const double hits = node.inlier_ratio;
   filter.min_accept_score = hits;
   restart();
   EXPECT_EQ(rejection({}), Rejection::kNone);
@@ -185,7 +185,7 @@ TEST_F(LinkTest, OdometryFarOffAGoodMatchContradictsIt) {
   EXPECT_TRUE(contradicts({0.0, -10.0 * sigma, 0.0}));
   EXPECT_TRUE(contradicts({0.0, 0.0, 1.0}));
   EXPECT_TRUE(contradicts({2.1, 0.0, 0.0}));           // refused for this alone
-  node.hit_fraction = filter.min_accept_score - 0.01;  // a poor match says nothing against odometry
+  node.inlier_ratio = filter.min_accept_score - 0.01;  // a poor match says nothing against odometry
   EXPECT_FALSE(contradicts({10.0 * sigma, 0.0, 0.0}));
 }
 

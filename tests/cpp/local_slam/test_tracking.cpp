@@ -29,7 +29,7 @@ TEST(TrackingMonitorTest, MissedScansAreUncertainAndManyAreLost) {
 
 TEST(TrackingMonitorTest, ALooseChainIsUncertainUntilAClosureThatIsOnTiesIt) {
   TrackingMonitor monitor;
-  monitor.hang_loosely(10, false);
+  monitor.add_untied(10, false);
   EXPECT_EQ(monitor.update(false), State::kUncertain);
   for (const Graph& graph : {closed(12, 10, 1.0), closed(8, 3, 1.0), closed(12, 3, 0.4)}) {
     monitor.look_for_tie(graph, 10);  // within itself; elsewhere; switched off
@@ -41,8 +41,8 @@ TEST(TrackingMonitorTest, ALooseChainIsUncertainUntilAClosureThatIsOnTiesIt) {
 
 TEST(TrackingMonitorTest, AChainLooseOnALooseChainMustBeTiedToWhatWasBeforeBoth) {
   TrackingMonitor monitor;
-  monitor.hang_loosely(10, true);
-  monitor.hang_loosely(20, false);
+  monitor.add_untied(10, true);
+  monitor.add_untied(20, false);
   EXPECT_EQ(monitor.update(false), State::kLost);  // a guess upon a guess
   monitor.look_for_tie(closed(25, 12, 1.0), 20);
   EXPECT_EQ(monitor.update(false), State::kLost);
@@ -85,7 +85,7 @@ class FaultTest : public ::testing::Test {
 TEST_F(FaultTest, AGoodDriveIsTrackedFromItsFirstScan) {
   const std::vector<State> states = drive();
   EXPECT_EQ(std::count(states.begin(), states.end(), State::kTracking), static_cast<long>(states.size()));
-  EXPECT_EQ(mapper.statistics().chain.contradictions, 0u);
+  EXPECT_EQ(mapper.statistics().trajectory.contradictions, 0u);
   EXPECT_EQ(mapper.statistics().tracking.tracking, states.size());
   EXPECT_EQ(mapper.statistics().tracking.changes, 0u);
 }
@@ -119,7 +119,7 @@ TEST_F(FaultTest, OdometryThatFreezesAndCatchesUpIsSeenThrough) {
   const std::vector<State> states = drive();
   for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_LT(error_at(k), 0.1) << "scan " << k;
   EXPECT_EQ(std::count(states.begin(), states.end(), State::kTracking), static_cast<long>(states.size()));
-  EXPECT_EQ(mapper.statistics().chain.contradictions, 0u);
+  EXPECT_EQ(mapper.statistics().trajectory.contradictions, 0u);
 }
 
 /// Odometry begins anew at zero, metres away from where it was.
@@ -130,7 +130,7 @@ TEST_F(FaultTest, OdometryThatRestartsAtZeroIsSeenThrough) {
   const std::vector<State> states = drive();
   for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_LT(error_at(k), 0.1) << "scan " << k;
   EXPECT_EQ(states.back(), State::kTracking);
-  EXPECT_EQ(mapper.statistics().chain.contradictions, 0u);
+  EXPECT_EQ(mapper.statistics().trajectory.contradictions, 0u);
   ASSERT_EQ(mapper.statistics().odometry_fault_count, 1u);
   EXPECT_EQ(mapper.statistics().odometry_faults.front().kind, OdometryFault::Kind::kJump);
   EXPECT_NEAR(mapper.statistics().odometry_faults.front().time, 25.0, 1e-9);
@@ -162,16 +162,16 @@ TEST_F(FaultTest, TheLinkOfAContradictionIsWideAndBeginsASegmentWhereverItIsRead
     odometry[k] = before * Pose2{0.0, 0.0, turned} * between(before, odometry[k]);
   }
   drive();
-  ASSERT_GE(mapper.statistics().chain.contradictions, 1u);
+  ASSERT_GE(mapper.statistics().trajectory.contradictions, 1u);
   const Map& map = mapper.map();
-  const Chains chains = Chains::of_map(map);
+  const TrajectorySegments segments = TrajectorySegments::of_map(map);
   const auto is_wide = [](const Edge& edge) { return edge.constraint.covariance(0, 0) > 0.25; };
   ASSERT_EQ(std::count_if(map.graph.edges.begin(), map.graph.edges.end(), is_wide),
-            static_cast<long>(mapper.statistics().chain.contradictions));
+            static_cast<long>(mapper.statistics().trajectory.contradictions));
   const auto wide = std::find_if(map.graph.edges.begin(), map.graph.edges.end(), is_wide);
   EXPECT_EQ(wide->i + 1, wide->j);
-  EXPECT_EQ(chains.segment_begin(wide->j), wide->j);
-  EXPECT_FALSE(chains.same_segment(wide->i, wide->j));
+  EXPECT_EQ(segments.segment_begin(wide->j), wide->j);
+  EXPECT_FALSE(segments.same_segment(wide->i, wide->j));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TEST_F(GenuineDockTest, MatchesTheDockAsTheOriginalDid) {
   ASSERT_EQ(original.j, 8u);
   for (const Parameters& parameters : {testing::documented_parameters(), Parameters()}) {
     ClosureCounts counts;
-    const auto closure = DockGraphBuilder(parameters).find(map, Chains::of_map(map), 8, counts);
+    const auto closure = DockGraphBuilder(parameters).find(map, TrajectorySegments::of_map(map), 8, counts);
     ASSERT_TRUE(closure);
     EXPECT_EQ(closure->from, 0u);
     EXPECT_EQ(closure->to, 8u);
@@ -38,7 +38,7 @@ TEST_F(GenuineDockTest, MatchesTheDockAsTheOriginalDid) {
     EXPECT_NEAR(closure->T_from_to.y, -0.0056, 0.01);
     EXPECT_NEAR(closure->T_from_to.theta, -0.0887, 0.01);
     EXPECT_NEAR(closure->T_from_to.x, original.constraint.T_i_j.x, 0.01);
-    EXPECT_GT(closure->hit_fraction, 0.8);
+    EXPECT_GT(closure->inlier_ratio, 0.8);
     EXPECT_EQ(counts.tried, 1u);
     EXPECT_EQ(counts.accepted, 1u);
   }
@@ -46,10 +46,10 @@ TEST_F(GenuineDockTest, MatchesTheDockAsTheOriginalDid) {
 
 TEST_F(GenuineDockTest, WithoutADockLocationTheFirstNodeOfTheChainCounts) {
   map.locations.clear();
-  const Chains chains = Chains::of_map(map);
-  EXPECT_EQ(nearest_dock(map, chains, 8).node, 0u);
+  const TrajectorySegments segments = TrajectorySegments::of_map(map);
+  EXPECT_EQ(nearest_dock(map, segments, 8).node, 0u);
   ClosureCounts counts;
-  EXPECT_TRUE(DockGraphBuilder(Parameters()).find(map, chains, 8, counts));
+  EXPECT_TRUE(DockGraphBuilder(Parameters()).find(map, segments, 8, counts));
 }
 
 TEST_F(GenuineDockTest, TheOriginalsDockClosureIsKnownAsOne) {
@@ -59,20 +59,20 @@ TEST_F(GenuineDockTest, TheOriginalsDockClosureIsKnownAsOne) {
 
 TEST(NearestDock, IsADockLocationSeenFromItsNode) {
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
   for (std::uint64_t k = 0; k < 10; ++k) {
     map.graph.nodes.push_back({k, {static_cast<double>(k), 0.0, 0.0}});
-    chains.add(k == 5, true, {});
+    segments.add(k == 5, true, {});
   }
-  EXPECT_EQ(nearest_dock(map, chains, 9).node, 5u);  // the first of its segment
+  EXPECT_EQ(nearest_dock(map, segments, 9).node, 5u);  // the first of its segment
   map.locations = {
       {"dock", "hall", 1, {0.1, 0.2, 0.3}}, {"place", "sofa", 8, {}}, {"dock", "attic", 3, {0.0, 0.0, 3.0}}};
-  EXPECT_EQ(nearest_dock(map, chains, 9).node, 3u);
-  EXPECT_DOUBLE_EQ(nearest_dock(map, chains, 9).T_node_dock.theta, 3.0);
-  EXPECT_EQ(nearest_dock(map, chains, 0).node, 1u);
+  EXPECT_EQ(nearest_dock(map, segments, 9).node, 3u);
+  EXPECT_DOUBLE_EQ(nearest_dock(map, segments, 9).T_node_dock.theta, 3.0);
+  EXPECT_EQ(nearest_dock(map, segments, 0).node, 1u);
   map.locations[2].T_node_location.x = -2.5;  // where the place is counts, not where its node is
-  EXPECT_EQ(nearest_dock(map, chains, 2).node, 1u);
-  EXPECT_EQ(nearest_dock(map, chains, 0).node, 3u);
+  EXPECT_EQ(nearest_dock(map, segments, 2).node, 1u);
+  EXPECT_EQ(nearest_dock(map, segments, 0).node, 3u);
 }
 
 /// Out from a dock and back onto it, in two segments: node 0 is the dock, the last node is on it again.
@@ -82,10 +82,10 @@ class DockTest : public ::testing::Test {
     const std::vector<Pose2> truth = testing::laps(0.5);
     std::vector<Pose2> places;
     for (std::size_t k = 0; k < 60; k += 5) places.push_back(truth[k]);
-    testing::append_chain(testing::make_room(), places, {}, map, chains);
+    testing::append_chain(testing::make_room(), places, {}, map, segments);
     std::reverse(places.begin(), places.end());
     places.back() = dock() * kDocked;
-    testing::append_chain(testing::make_room(), places, {}, map, chains);
+    testing::append_chain(testing::make_room(), places, {}, map, segments);
     query = map.graph.nodes.back().id;
     map.graph.nodes.back().pose = dock() * Pose2{3.0, 2.0, 1.0};  // however wrong the graph is by then
     map.locations = {{"dock", "dock", 0, {}}};
@@ -95,7 +95,7 @@ class DockTest : public ::testing::Test {
 
   std::optional<Closure> find() {
     counts = {};
-    return DockGraphBuilder(parameters).find(map, chains, query, counts);
+    return DockGraphBuilder(parameters).find(map, segments, query, counts);
   }
   Rejection verdict() {
     if (find()) return Rejection::kNone;
@@ -106,7 +106,7 @@ class DockTest : public ::testing::Test {
 
   const Pose2 kDocked{0.05, -0.03, 0.06};
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
   std::uint64_t query = 0;
   Parameters parameters = testing::documented_parameters();
   DockGraphBuilderParameters& p = parameters.dock_graph_builder;
@@ -126,9 +126,9 @@ TEST_F(DockTest, IsMeasuredWhereverTheGraphPutsTheRobot) {
 
 TEST_F(DockTest, HitsAndDistanceAreLimited) {
   const Closure closure = find().value();
-  p.dock_match_min_hit_pct = closure.hit_fraction;
+  p.dock_match_min_hit_pct = closure.inlier_ratio;
   EXPECT_EQ(verdict(), Rejection::kNone);
-  p.dock_match_min_hit_pct = closure.hit_fraction + 1e-9;
+  p.dock_match_min_hit_pct = closure.inlier_ratio + 1e-9;
   EXPECT_EQ(verdict(), Rejection::kHits);
   p.dock_match_min_hit_pct = 0.0;
   const double distance = closure.T_from_to.translation().norm();
@@ -149,11 +149,11 @@ TEST_F(DockTest, DistanceIsFromTheDockNotFromItsNode) {
 }
 
 TEST_F(DockTest, WhereTheLastNodesAreBentFewerAreMatched) {
-  chains = {};  // the same places again, but the robot took its last turn but one for a much wider one
+  segments = {};  // the same places again, but the robot took its last turn but one for a much wider one
   for (std::uint64_t k = 0; k < map.graph.nodes.size(); ++k) {
     const Pose2 T_bent = k < query - 2 ? Pose2{0.3, -0.2, 0.5} : Pose2{};
     const Pose2 place = k == query ? dock() * kDocked : map.graph.nodes[k].pose;
-    chains.add(k == 0 || k == 12, true, k < 12 ? place : T_bent * place);
+    segments.add(k == 0 || k == 12, true, k < 12 ? place : T_bent * place);
   }
   p.dock_match_least_size = p.dock_match_submap_size;
   EXPECT_EQ(verdict(), Rejection::kHits);
@@ -169,11 +169,11 @@ TEST_F(DockTest, WhereTheLastNodesAreBentFewerAreMatched) {
 
 // Of the 24 nodes of this drive the last ones are bent; matched with those just before them they would fit.
 TEST_F(DockTest, TheWayBackDoesNotStandForTheDock) {
-  chains = {};
+  segments = {};
   const Pose2 T_bent{0.1, -0.05, 0.2};
   for (std::uint64_t k = 0; k < map.graph.nodes.size(); ++k) {
     const Pose2 place = k == query ? dock() * kDocked : map.graph.nodes[k].pose;
-    chains.add(k == 0, true, k < query - 10 ? place : T_bent * place);
+    segments.add(k == 0, true, k < query - 10 ? place : T_bent * place);
   }
   p.dock_match_least_size = 1;
   const std::optional<Closure> closure = find();
@@ -186,8 +186,8 @@ TEST_F(DockTest, TheWayBackDoesNotStandForTheDock) {
 TEST_F(DockTest, ThatOneNodeIsAllThereIsMakesItNoBetter) {
   const std::optional<Closure> whole = find();
   ASSERT_TRUE(whole);
-  chains = {};  // the last node stands alone: what is before it is of another session
-  for (const Node& node : map.graph.nodes) chains.add(node.id == 0 || node.id == query, true, node.pose);
+  segments = {};  // the last node stands alone: what is before it is of another session
+  for (const Node& node : map.graph.nodes) segments.add(node.id == 0 || node.id == query, true, node.pose);
   PointCloud seen = map.clouds[query];
   for (std::size_t k = 0; k < 60; ++k) {  // a third of what it sees has changed
     seen.points[k].x *= 0.6;
@@ -237,7 +237,7 @@ TEST_F(DockTest, WhereNothingIsSeenTheContactsCount) {
   const std::optional<Closure> closure = find();
   ASSERT_TRUE(closure);
   EXPECT_EQ(closure->T_from_to.x, 0.0);
-  EXPECT_EQ(closure->hit_fraction, 0.0);
+  EXPECT_EQ(closure->inlier_ratio, 0.0);
   const double reach = p.dock_contacts_size + p.dock_max_translation;
   EXPECT_NEAR(closure->covariance(0, 0), reach * reach, 1e-12);
   EXPECT_EQ(counts.accepted, 1u);
@@ -249,10 +249,10 @@ TEST_F(DockTest, TheDocksOwnNodeIsNoClosure) {
   query = 0;
   EXPECT_EQ(verdict(), Rejection::kSameNode);
   query = 1;  // all that was seen is the query's own submap
-  chains = {};
+  segments = {};
   map.graph.nodes.resize(2);
-  chains.add(true, true, {});
-  chains.add(false, true, {0.2, 0.0, 0.0});
+  segments.add(true, true, {});
+  segments.add(false, true, {0.2, 0.0, 0.0});
   EXPECT_EQ(verdict(), Rejection::kNoReference);
 }
 

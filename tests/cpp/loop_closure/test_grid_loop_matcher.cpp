@@ -21,19 +21,19 @@ class GridLoopTest : public ::testing::Test {
     const std::vector<Pose2> truth = testing::laps(0.5);
     std::vector<Pose2> places;
     for (std::size_t k = 0; k < 15; ++k) places.push_back(truth[5 * k]);
-    testing::append_chain(testing::make_room(), places, testing::kAllRound, map, chains);
-    testing::append_chain(testing::make_room(), {places[7] * offset}, testing::kAllRound, map, chains);
+    testing::append_chain(testing::make_room(), places, testing::kAllRound, map, segments);
+    testing::append_chain(testing::make_room(), {places[7] * offset}, testing::kAllRound, map, segments);
     map.graph.nodes[15].pose = map.graph.nodes[15].pose * kError;
     parameters.loop_closure_graph_builder.scanmatcher = "branch_and_bound_matcher";
   }
 
   LoopMatcher::Found find(const SearchWindow& window) {
-    return GridLoopMatcher(parameters, scale).find(map, chains, 15, 7, window);
+    return GridLoopMatcher(parameters, scale).find(map, segments, 15, 7, window);
   }
 
   const Pose2 offset{0.05, 0.03, 1.0};
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
   Parameters parameters;
   BranchAndBoundMatcherParameters& p = parameters.loop_closure_graph_builder.branch_and_bound_matcher;
   LoopScale scale;
@@ -44,7 +44,7 @@ TEST_F(GridLoopTest, FindsTheQueryWhereItIs) {
   ASSERT_EQ(found.rejection, Rejection::kNone);
   EXPECT_LT(between(offset, found.T_candidate_query).translation().norm(), 0.05) << "a cell";
   EXPECT_NEAR(found.T_candidate_query.theta, offset.theta, 0.01);
-  EXPECT_GT(found.hit_fraction, 0.7);
+  EXPECT_GT(found.inlier_ratio, 0.7);
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(found.covariance).eigenvalues().minCoeff(), 0.0);
   scale.sigma_xy = 0.5;
   EXPECT_NEAR(find({1.0, 0.4, {}}).covariance(0, 0), found.covariance(0, 0) + 0.25, 1e-9);
@@ -52,16 +52,16 @@ TEST_F(GridLoopTest, FindsTheQueryWhereItIs) {
 
 TEST_F(GridLoopTest, DrawsTheSubmapInOnePiece) {
   GridLoopMatcher matcher(parameters, scale);
-  EXPECT_TRUE(matcher.draw(map, chains, 7));
-  EXPECT_FALSE(matcher.draw(map, chains, 7));
-  EXPECT_EQ(matcher.find(map, chains, 15, 7, {1.0, 0.4, {}}).T_candidate_query.x,
+  EXPECT_TRUE(matcher.draw(map, segments, 7));
+  EXPECT_FALSE(matcher.draw(map, segments, 7));
+  EXPECT_EQ(matcher.find(map, segments, 15, 7, {1.0, 0.4, {}}).T_candidate_query.x,
             find({1.0, 0.4, {}}).T_candidate_query.x);
 }
 
 TEST_F(GridLoopTest, LeavesOutWhatIsFartherThanItsReach) {
-  const auto nodes = chains.neighborhood(7, 15);
+  const auto nodes = segments.neighborhood(7, 15);
   const auto cells = [&](double reach) {
-    const GridLimits limits = draw_grid(map, chains, 7, nodes, p.probability_grid, reach).limits();
+    const GridLimits limits = draw_grid(map, segments, 7, nodes, p.probability_grid, reach).limits();
     return limits.width * limits.height;
   };
   EXPECT_LT(cells(1.0), cells(100.0));
@@ -86,9 +86,9 @@ TEST_F(GridLoopTest, TheBuilderUsesItWithItsWindowAndFilter) {
   const auto closures = [&] {
     counts = {};
     LoopClosureBuilder builder(parameters);
-    builder.look(map, chains, 15);
+    builder.look(map, segments, 15);
     ClosureLog log;
-    return builder.work_off(map, chains, counts, log);
+    return builder.work_off(map, segments, counts, log);
   };
   EXPECT_EQ(closures().size(), 1u);
   p.match_filter.match_max_dist = p.match_filter.match_max_dist_high = 0.3;

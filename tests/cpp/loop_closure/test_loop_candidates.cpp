@@ -30,7 +30,7 @@ class CandidatesTest : public ::testing::Test {
     const std::uint64_t id = map.graph.nodes.size();
     map.graph.nodes.push_back({id, {x, 0.0, 0.0}});
     map.clouds.push_back({id, 0.0, {}});
-    chains.add(begins_segment, true, {x, 0.0, 0.0});
+    segments.add(begins_segment, true, {x, 0.0, 0.0});
   }
 
   /// Out along the x axis and back, 0.2 m a node: nodes k and 2 * half - 1 - k are at the same place.
@@ -39,10 +39,10 @@ class CandidatesTest : public ::testing::Test {
     for (int k = half; k-- > 0;) add(0.2 * k);
   }
 
-  Ids candidates(std::uint64_t query) const { return LoopClosureBuilder(parameters).candidates(map, chains, query); }
+  Ids candidates(std::uint64_t query) const { return LoopClosureBuilder(parameters).candidates(map, segments, query); }
 
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
   Parameters parameters = documented_search();
 };
 

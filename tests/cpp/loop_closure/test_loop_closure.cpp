@@ -34,12 +34,12 @@ class ClosureTest : public ::testing::Test {
     const std::vector<Pose2> truth = testing::laps(0.5);
     std::vector<Pose2> places;
     for (std::size_t k = 0; k < 15; ++k) places.push_back(truth[5 * k]);
-    testing::append_chain(world, places, testing::kAllRound, map, chains);
-    testing::append_chain(world, {places[kCandidate] * kOffset}, testing::kAllRound, map, chains);
-    Chains one;
-    for (std::uint64_t k = 0; k < kQuery; ++k) one.add(k == 0, true, chains.local_pose(k));
-    one.add(false, true, chains.local_pose(kCandidate) * kOffset);
-    chains = one;
+    testing::append_chain(world, places, testing::kAllRound, map, segments);
+    testing::append_chain(world, {places[kCandidate] * kOffset}, testing::kAllRound, map, segments);
+    TrajectorySegments one;
+    for (std::uint64_t k = 0; k < kQuery; ++k) one.add(k == 0, true, segments.local_pose(k));
+    one.add(false, true, segments.local_pose(kCandidate) * kOffset);
+    segments = one;
     map.graph.nodes[kQuery].pose = map.graph.nodes[kQuery].pose * kDisplacement;
     loop.candidate_search.knearest_neighbors = 1;
     loop.candidate_search.candidate_stride = 1;
@@ -62,8 +62,8 @@ class ClosureTest : public ::testing::Test {
 
   std::vector<Closure> find_all() {
     LoopClosureBuilder builder(parameters);
-    builder.look(map, chains, kQuery);
-    return builder.work_off(map, chains, counts, log);
+    builder.look(map, segments, kQuery);
+    return builder.work_off(map, segments, counts, log);
   }
 
   std::optional<Closure> find() {
@@ -83,7 +83,7 @@ class ClosureTest : public ::testing::Test {
 
   World world = testing::make_room();
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
   Parameters parameters = testing::documented_parameters();
   LoopClosureGraphBuilderParameters& loop = parameters.loop_closure_graph_builder;
   MatchFilterParameters& filter = loop.frsm_matcher.match_filter;
@@ -100,7 +100,7 @@ TEST_F(ClosureTest, FindsTheTruePlace) {
   EXPECT_NEAR(error.x, 0.0, 0.01);
   EXPECT_NEAR(error.y, 0.0, 0.01);
   EXPECT_NEAR(error.theta, 0.0, 0.005);
-  EXPECT_GT(closure->hit_fraction, 0.9);
+  EXPECT_GT(closure->inlier_ratio, 0.9);
   EXPECT_LT(closure->covariance(0, 0), 0.01 * 0.01 * 25.0);
   EXPECT_GT(closure->covariance.determinant(), 0.0);
 }
@@ -115,7 +115,7 @@ TEST_F(ClosureTest, IsTheSameEachTime) {
 
 TEST_F(ClosureTest, FarMatchNearTheExpectedPlaceNeedsMoreThanTheHitThreshold) {
   filter.match_max_dist_high = 0.0;
-  const double hits = find().value().hit_fraction;
+  const double hits = find().value().inlier_ratio;
   filter.match_hitpct_threshold = below(hits);
   EXPECT_EQ(verdict(), Rejection::kNone);
   filter.match_hitpct_threshold = hits;  // "greater than"
@@ -129,7 +129,7 @@ TEST_F(ClosureTest, FarMatchNearTheExpectedPlaceNeedsMoreThanTheHitThreshold) {
 
 TEST_F(ClosureTest, FarMatchAwayFromTheExpectedPlaceNeedsTheHighThreshold) {
   filter.match_max_dist = 0.29;
-  const double hits = find().value().hit_fraction;
+  const double hits = find().value().inlier_ratio;
   filter.match_hitpct_threshold_high = below(hits);
   EXPECT_EQ(verdict(), Rejection::kNone);
   filter.match_hitpct_threshold_high = hits;
@@ -153,7 +153,7 @@ TEST_F(ClosureTest, OppositeIsSaidOfTheHeadingsBeforeTheMatch) {
 
 TEST_F(ClosureTest, OppositeMatchesHaveThresholdsOfTheirOwn) {
   filter.opposite_dir_threshold = 0.0;
-  const double hits = find().value().hit_fraction;
+  const double hits = find().value().inlier_ratio;
   filter.match_hitpct_threshold_high_opposite_dir = 1.0;
   filter.match_hitpct_threshold_opposite_dir = below(hits);
   EXPECT_EQ(verdict(), Rejection::kNone);
@@ -168,7 +168,7 @@ TEST_F(ClosureTest, OppositeMatchesHaveThresholdsOfTheirOwn) {
 TEST_F(ClosureTest, CloseMatchNeedsAtLeastItsHitThreshold) {
   set_close();
   filter.match_max_dist = filter.match_max_dist_high = 0.0;  // do not count here
-  const double hits = find().value().hit_fraction;
+  const double hits = find().value().inlier_ratio;
   filter.close_node_hitpct_threshold = hits;  // "at least"
   EXPECT_EQ(verdict(), Rejection::kNone);
   filter.close_node_hitpct_threshold = above(hits);
@@ -202,7 +202,7 @@ TEST_F(ClosureTest, RoughAndFineMatchNeedTheirHits) {
   loop.frsm_matcher.fine_match_hitpct_threshold = above(1.0);
   EXPECT_EQ(verdict(), Rejection::kFineHits);
   loop.frsm_matcher.fine_match_hitpct_threshold = 0.0;
-  const double hits = find().value().hit_fraction;
+  const double hits = find().value().inlier_ratio;
   loop.frsm_matcher.fine_match_hitpct_threshold = hits;
   EXPECT_EQ(verdict(), Rejection::kNone);
 }

@@ -36,8 +36,8 @@ World corridor() {
 /// A map whose chain was measured with noise, and whose nodes are where the chain puts them.
 Map drifted_map(const World& world, const std::vector<Pose2>& places, std::uint64_t seed) {
   Map map;
-  Chains chains;
-  append_chain(world, places, Sensor{}, map, chains);
+  TrajectorySegments segments;
+  append_chain(world, places, Sensor{}, map, segments);
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
   for (std::uint64_t k = 1; k < places.size(); ++k) {

@@ -19,7 +19,7 @@ using testing::make_room;
 using testing::odometry_of;
 using testing::see;
 
-constexpr double kDrift = 0.03;  // [rad/m]: loops close with a surprise
+constexpr double kDrift = 0.03;  // [rad/m]: loops close with a innovation
 
 Parameters with_thread(bool threaded) {
   Parameters parameters = default_parameters();

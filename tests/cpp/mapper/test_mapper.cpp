@@ -74,7 +74,7 @@ TEST_F(MapperTest, ExactOdometryGivesTheTruth) {
     const Errors errors = node_errors(mapper.map(), truth);
     EXPECT_LT(errors.position, 0.03);
     EXPECT_LT(errors.heading, 0.015);
-    EXPECT_EQ(mapper.statistics().chain.odometry_links, 0u);
+    EXPECT_EQ(mapper.statistics().trajectory.odometry_links, 0u);
     EXPECT_GT(mapper.statistics().global.loops.accepted, 0u);
   }
 }
@@ -116,13 +116,13 @@ TEST_F(MapperTest, NodesAreMadeByTheMotionOfTheBase) {
     return mapper.add_scan(see(world, base * Pose2{0.5, 0.0, 0.0}, time), base).outcome;
   };
   EXPECT_EQ(turn(0.0, 0.0), ScanOutcome::kNode);
-  EXPECT_EQ(turn(0.59, 0.1), ScanOutcome::kCarried);  // the sensor moved by 0.29 m
+  EXPECT_EQ(turn(0.59, 0.1), ScanOutcome::kLocated);  // the sensor moved by 0.29 m
   EXPECT_EQ(turn(0.61, 0.2), ScanOutcome::kNode);
   const auto forward = [&](double x, double time) {
     const Pose2 base = Pose2{-1.3, -1.05, 0.61} * Pose2{x, 0.0, 0.0};
     return mapper.add_scan(see(world, base * Pose2{0.5, 0.0, 0.0}, time), base).outcome;
   };
-  EXPECT_EQ(forward(0.199, 0.3), ScanOutcome::kCarried);
+  EXPECT_EQ(forward(0.199, 0.3), ScanOutcome::kLocated);
   EXPECT_EQ(forward(0.201, 0.4), ScanOutcome::kNode);
 }
 
@@ -182,7 +182,7 @@ TEST_F(MapperTest, MapIsWellFormed) {
     EXPECT_EQ(map.loop_results[k].target, edge.j);
   }
   const MapperStatistics& statistics = mapper.statistics();
-  EXPECT_EQ(statistics.chain.nodes, nodes);
+  EXPECT_EQ(statistics.trajectory.nodes, nodes);
   EXPECT_EQ(statistics.local.scans, truth.size());
   EXPECT_EQ(statistics.local.scans_too_small, 0u);
   EXPECT_EQ(statistics.global.loops.accepted, map.graph.switchable_edges.size());
@@ -196,7 +196,7 @@ TEST_F(MapperTest, ParkedRobotAddsNothing) {
   const std::uint64_t solves = mapper.statistics().global.solves;
   for (int k = 0; k < 500; ++k) {
     EXPECT_EQ(mapper.add_scan(see(world, some.back() * kMount, 200.0 + 0.1 * k), some.back()).outcome,
-              ScanOutcome::kCarried);
+              ScanOutcome::kLocated);
   }
   EXPECT_EQ(mapper.map().graph.nodes.size(), nodes);
   EXPECT_EQ(mapper.statistics().global.solves, solves);
@@ -256,9 +256,9 @@ TEST_F(MapperTest, MatchAgainstTheOdometryBecomesAnOdometryLink) {
   drive(mapper, world, truth, odometry);
   const Map& map = mapper.map();
   const MapperStatistics& statistics = mapper.statistics();
-  EXPECT_GE(statistics.chain.odometry_links, 1u);
-  EXPECT_EQ(statistics.chain.match_rejections[Rejection::kNone], 0u);
-  EXPECT_EQ(statistics.chain.match_rejections.total(), statistics.chain.odometry_links);
+  EXPECT_GE(statistics.trajectory.odometry_links, 1u);
+  EXPECT_EQ(statistics.trajectory.match_rejections[Rejection::kNone], 0u);
+  EXPECT_EQ(statistics.trajectory.match_rejections.total(), statistics.trajectory.odometry_links);
   const auto jump = std::find_if(map.graph.edges.begin(), map.graph.edges.end(),
                                  [](const Edge& e) { return e.constraint.type == ConstraintType::kOdometry; });
   ASSERT_NE(jump, map.graph.edges.end());

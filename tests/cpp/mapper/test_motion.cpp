@@ -62,7 +62,7 @@ TEST(Sweep, EachPointComesToWhereItIsFromTheStamp) {
     for (const bool reversed : {false, true}) {
       const LaserScan scan = see_sweeping(room, base, motion, 5.0, testing::kAllRound, reversed);
       const Sweep sweep = reversed ? Sweep{motion, {}} : Sweep{{}, motion};
-      const PointCloud cloud = compensate_motion(to_point_cloud(scan), sweep_of_sensor(sweep, kMount));
+      const PointCloud cloud = deskew(to_point_cloud(scan), sweep_of_sensor(sweep, kMount));
       EXPECT_EQ(cloud.time, 5.0);
       for (const Point2& p : cloud.points) {
         ASSERT_TRUE(p.is_return());
@@ -90,7 +90,7 @@ TEST(Sweep, KeepsWhatIsNoReturn) {
   const float inf = std::numeric_limits<float>::infinity();
   const LaserScan scan{1.0, 0.0, 0.5, 0.1, 3.0, {1.0F, inf, static_cast<float>(kNan), 4.0F, 1.0F}};
   const PointCloud before = to_point_cloud(scan);
-  const PointCloud cloud = compensate_motion(before, {{}, {0.0, 0.0, 0.4}});
+  const PointCloud cloud = deskew(before, {{}, {0.0, 0.0, 0.4}});
   EXPECT_EQ(cloud.points[1].x, inf);
   EXPECT_NEAR(cloud.points[1].y, 0.5 + 0.1, 1e-12);  // the bearing turned by a quarter of the turn
   EXPECT_TRUE(std::isnan(cloud.points[2].x));
@@ -103,13 +103,13 @@ TEST(Sweep, WithoutMotionOrWithAnImpossibleOneNothingChanges) {
   const PointCloud cloud = to_point_cloud(see(make_room(), {}, 0.0));
   for (const Sweep& sweep : {Sweep{}, Sweep{{}, {1.5, 0.0, 0.0}}, Sweep{{0.0, 0.0, -0.6}, {0.0, 0.0, 0.6}},
                              Sweep{{5.0, 0.0, 0.0}, {5.0, 0.0, 0.0}}}) {
-    const PointCloud same = compensate_motion(cloud, sweep);
+    const PointCloud same = deskew(cloud, sweep);
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
       EXPECT_EQ(same.points[i].x, cloud.points[i].x);
       EXPECT_EQ(same.points[i].y, cloud.points[i].y);
     }
   }
-  EXPECT_THROW(compensate_motion(cloud, {{}, {kNan, 0.0, 0.0}}), InputError);
+  EXPECT_THROW(deskew(cloud, {{}, {kNan, 0.0, 0.0}}), InputError);
 }
 
 /// Laps with scans that sweep: the largest error of a node.

@@ -49,7 +49,7 @@ TEST(CorrelativeMatcher, FindsAKnownOffset) {
     EXPECT_EQ(match.rejection, Rejection::kNone);
     EXPECT_LT(distance(match.pose, kTruth), 0.05);
     EXPECT_NEAR(match.pose.theta, kTruth.theta, 0.025);
-    EXPECT_GT(match.hit_fraction, 0.8);
+    EXPECT_GT(match.inlier_ratio, 0.8);
   }
 }
 
@@ -69,7 +69,7 @@ TEST(CorrelativeMatcher, StaysWhereNothingIsKnown) {
   const ScanMatch match = CorrelativeMatcher(empty, {0.2, 0.2, 0.0, 0.0}).match(seen_from(kTruth, 5), guess);
   EXPECT_EQ(distance(match.pose, guess), 0.0) << "of equal scores that nearest to the guess";
   EXPECT_NEAR(match.score, 0.1, 1e-9);
-  EXPECT_EQ(match.hit_fraction, 0.0);
+  EXPECT_EQ(match.inlier_ratio, 0.0);
 }
 
 TEST(CeresMatcher, RefinesToAFractionOfACell) {

@@ -192,10 +192,10 @@ TEST_F(MergeTest, ARoomThatIsThereTwiceIsAmbiguousUnlessThePlaceIsGiven) {
   std::vector<Pose2> way = forth;
   for (const Pose2& pose : moved(forth, T_first_second)) way.push_back(pose);
   Map both;
-  Chains chains;
+  TrajectorySegments segments;
   std::vector<Pose2> places;
   for (std::size_t k = 0; k < way.size(); k += 5) places.push_back(way[k] * kMount);
-  testing::append_chain(world, places, {}, both, chains);
+  testing::append_chain(world, places, {}, both, segments);
   for (std::size_t k = 1; k < places.size(); ++k) {
     both.graph.edges.push_back(
         {k,

@@ -19,10 +19,10 @@ using testing::views_of_room;
 /// A map with something of everything.
 Map small_map(const Pose2& T_world_map = {}) {
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
   std::vector<Pose2> places = views_of_room();
   places.resize(5);
-  testing::append_chain(make_room(), places, {}, map, chains);
+  testing::append_chain(make_room(), places, {}, map, segments);
   for (Node& node : map.graph.nodes) node.pose = inverse(T_world_map) * node.pose;
   const Eigen::Matrix3d covariance = 1e-4 * Eigen::Matrix3d::Identity();
   for (std::uint64_t k = 1; k < 5; ++k) {
@@ -70,12 +70,12 @@ TEST(AppendMap, CountsAllIdsOn) {
 TEST(AppendMap, SegmentsStayWhatTheyWere) {
   Map map = small_map();
   append_map(small_map(), {}, map);
-  const Chains chains = Chains::of_map(map);
-  EXPECT_EQ(chains.segment_begin(4), 0u);
-  EXPECT_EQ(chains.segment_begin(5), 5u);
-  EXPECT_EQ(chains.segment_begin(9), 5u);
-  const Chains alone = Chains::of_map(small_map());
-  EXPECT_LT(between(alone.local_pose(4), chains.local_pose(9)).translation().norm(), 1e-12);
+  const TrajectorySegments segments = TrajectorySegments::of_map(map);
+  EXPECT_EQ(segments.segment_begin(4), 0u);
+  EXPECT_EQ(segments.segment_begin(5), 5u);
+  EXPECT_EQ(segments.segment_begin(9), 5u);
+  const TrajectorySegments alone = TrajectorySegments::of_map(small_map());
+  EXPECT_LT(between(alone.local_pose(4), segments.local_pose(9)).translation().norm(), 1e-12);
 }
 
 TEST(CommonScans, AreThoseOfTheSameTimeAndPoints) {
@@ -96,9 +96,9 @@ TEST(CommonScans, AreThoseOfTheSameTimeAndPoints) {
 
 TEST(SpreadViews, CoverTheMapEvenly) {
   Map map;
-  Chains chains;
-  testing::append_chain(make_room(), views_of_room(), {}, map, chains);
-  const std::vector<MapView> views = spread_views(map, chains, 100, 0.7, 5);
+  TrajectorySegments segments;
+  testing::append_chain(make_room(), views_of_room(), {}, map, segments);
+  const std::vector<MapView> views = spread_views(map, segments, 100, 0.7, 5);
   EXPECT_GT(views.size(), 5u);
   for (const MapView& view : views) {
     EXPECT_LE(view.scans.size(), 5u);
@@ -113,14 +113,14 @@ TEST(SpreadViews, CoverTheMapEvenly) {
       return (map.graph.nodes[view.node].pose.translation() - node.pose.translation()).norm() < 0.7;
     }));
   }
-  EXPECT_EQ(spread_views(map, chains, 3, 0.7, 5).size(), 3u);
-  EXPECT_TRUE(spread_views(Map{}, Chains{}, 3, 0.7, 5).empty());
+  EXPECT_EQ(spread_views(map, segments, 3, 0.7, 5).size(), 3u);
+  EXPECT_TRUE(spread_views(Map{}, TrajectorySegments{}, 3, 0.7, 5).empty());
 }
 
 TEST(MapPlacement, ASmallMapIsFoundOnALargeOneAndTheOtherWayRound) {
   Map large;
-  Chains chains;
-  testing::append_chain(make_room(), views_of_room(), {}, large, chains);
+  TrajectorySegments segments;
+  testing::append_chain(make_room(), views_of_room(), {}, large, segments);
   const Eigen::Matrix3d covariance = 1e-4 * Eigen::Matrix3d::Identity();
   for (std::uint64_t k = 1; k < large.graph.nodes.size(); ++k) {
     const Pose2 step = between(large.graph.nodes[k - 1].pose, large.graph.nodes[k].pose);
@@ -143,15 +143,15 @@ TEST(MapPlacement, ASmallMapIsFoundOnALargeOneAndTheOtherWayRound) {
 
 TEST(LoopClosureBuilder, LooksForEarlierNodesOnlyWhereAsked) {
   Map map;
-  Chains chains;
-  testing::append_chain(make_room(), views_of_room(), {}, map, chains);
+  TrajectorySegments segments;
+  testing::append_chain(make_room(), views_of_room(), {}, map, segments);
   const std::uint64_t second = map.graph.nodes.size();
-  testing::append_chain(make_room(), views_of_room(), {}, map, chains);
+  testing::append_chain(make_room(), views_of_room(), {}, map, segments);
   Parameters parameters;
   parameters.loop_closure_graph_builder.candidate_search.knearest_neighbors = 100;
   const LoopClosureBuilder loops(parameters);
-  const std::vector<std::uint64_t> all = loops.candidates(map, chains, second + 20);
-  const std::vector<std::uint64_t> before = loops.candidates(map, chains, second + 20, second);
+  const std::vector<std::uint64_t> all = loops.candidates(map, segments, second + 20);
+  const std::vector<std::uint64_t> before = loops.candidates(map, segments, second + 20, second);
   EXPECT_FALSE(before.empty());
   EXPECT_LT(before.size(), all.size());
   EXPECT_TRUE(std::all_of(before.begin(), before.end(), [&](std::uint64_t node) { return node < second; }));

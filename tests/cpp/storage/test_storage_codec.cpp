@@ -119,7 +119,7 @@ TEST(Codec, KeepsEveryField) {
   EXPECT_EQ(again.graph.switchable_edges.at(0).switch_value, 0.75);
   EXPECT_EQ(again.incremental_results.at(2).target, 1U);
   EXPECT_EQ(again.incremental_results.at(2).T_target_id.x, 0.3);
-  EXPECT_EQ(again.loop_results.at(0).hit_fraction, 0.875);
+  EXPECT_EQ(again.loop_results.at(0).inlier_ratio, 0.875);
   EXPECT_EQ(again.loop_results.at(0).target, 3U);
   // Bytes compare nan too, which no number equals.
   EXPECT_EQ(encode_map(again), encode_map(map));
@@ -292,7 +292,7 @@ TEST(Defect, FindsWhatMakesAMapUnusable) {
         [](Map& m) { testing::edit_cloud(m.clouds, 2, [](PointCloud& c) { c.points[1].y = kNan; }); });
   finds("incremental result 1 refers", [](Map& m) { m.incremental_results[1].target = 4; });
   finds("pose of incremental result 1", [](Map& m) { m.incremental_results[1].T_local_id.theta = kNan; });
-  finds("hit fraction of incremental result 1", [](Map& m) { m.incremental_results[1].hit_fraction = kNan; });
+  finds("inlier ratio of incremental result 1", [](Map& m) { m.incremental_results[1].inlier_ratio = kNan; });
   finds("loop result 0 refers", [](Map& m) { m.loop_results[0].id = 4; });
   finds("pose of loop result 0", [](Map& m) { m.loop_results[0].T_id_target.x = kNan; });
   finds("'dock/dock' refers to node 4", [](Map& m) { m.locations[0].node_id = 4; });

@@ -63,7 +63,7 @@ def test_the_map_comes_closer_to_the_truth(home: Drive, refined: Session) -> Non
     assert counts["misfit"] < counts["misfit_before"]
     links = counts["links"]
     assert links["accepted"] > len(refined.map)
-    assert links["tried"] == links["accepted"] + sum(links["refused"].values())
+    assert links["tried"] == links["accepted"] + sum(links["rejected"].values())
     for edges in ("edges", "switchable_edges"):  # what was measured stays
         np.testing.assert_array_equal(getattr(refined.map, edges)["pose"], getattr(plain.map, edges)["pose"])
 

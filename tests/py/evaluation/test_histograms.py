@@ -11,7 +11,7 @@ from PIL import Image
 from conftest import ROOT
 from oort import Map, load_map
 from oort.errors import InputError
-from oort.evaluation.histograms import CHI2_EDGES, HIT_EDGES, make_histograms, panels
+from oort.evaluation.histograms import CHI2_EDGES, INLIER_EDGES, make_histograms, panels
 from oort.export.chart import Panel, write_chart
 
 GOLDEN = ROOT / "tests/py/data/maps/format_1/home"
@@ -19,9 +19,9 @@ GOLDEN = ROOT / "tests/py/data/maps/format_1/home"
 
 def test_hits_are_counted_from_the_lower_limit_on() -> None:
     values = [0.0, 0.0499, 0.05, 0.949, 0.95, 1.0]
-    hits = make_histograms(Map(), values, values)["hits"]
+    hits = make_histograms(Map(), values, values)["inlier_ratio"]
     counts = hits["scans"]
-    assert hits["refused"] == counts
+    assert hits["rejected"] == counts
     assert (counts[0], counts[1], counts[18], counts[19], sum(counts)) == (2, 1, 1, 2, 6)
 
 
@@ -36,8 +36,8 @@ def test_every_link_is_counted_once() -> None:
         "closures": len(map_.switchable_edges["id"]) - off,
         "switched_off": off,
     }
-    assert sum(histograms["hits"]["closures"]) == len(map_.loop_results["id"])
-    assert sum(histograms["hits"]["scans"]) == 0
+    assert sum(histograms["inlier_ratio"]["closures"]) == len(map_.loop_results["id"])
+    assert sum(histograms["inlier_ratio"]["scans"]) == 0
 
 
 def test_chi_squared_by_hand() -> None:
@@ -64,7 +64,7 @@ def test_an_empty_map_has_nothing_to_draw() -> None:
 
 def test_picture(tmp_path: Path) -> None:
     drawn = panels(make_histograms(load_map(str(GOLDEN)), [0.9, 0.8]))
-    assert [panel.title for panel in drawn][:2] == ["hit fraction of tracked scans", "hit fraction of closures"]
+    assert [panel.title for panel in drawn][:2] == ["inlier ratio of tracked scans", "inlier ratio of closures"]
     for name in ("a.png", "b.png"):
         write_chart(tmp_path / name, drawn)
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
@@ -80,4 +80,4 @@ def test_a_bar_is_as_tall_as_its_count(tmp_path: Path) -> None:
     assert heights[1] == pytest.approx(heights[0] / 2, abs=1.5)
     assert (heights[0] > 100, heights[2]) == (True, 0)
     with pytest.raises(InputError, match="2 counts do not fit 1 bins"):
-        write_chart(tmp_path / "b.png", [Panel("odd", HIT_EDGES[:1], [1, 2])])
+        write_chart(tmp_path / "b.png", [Panel("odd", INLIER_EDGES[:1], [1, 2])])

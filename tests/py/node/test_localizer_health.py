@@ -19,7 +19,7 @@ from oort.node.localizer_health import LocalizerHealth, Sighting
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 STATISTICS = {
     "matched": 90, "searches": 5, "jumps": 1,
-    "match_refusals": {"low support": 8}, "search_refusals": {"low_support": 1, "ambiguous": 3},
+    "match_rejections": {"low support": 8}, "search_rejections": {"low_support": 1, "ambiguous": 3},
 }  # fmt: skip
 SIGHTING = Sighting(
     "tracking", 0.92, (1.0, 2.0, 0.5), (0.9, 2.0, 0.5), np.diag([0.0009, 0.0004, 0.0001]), STATISTICS
@@ -47,7 +47,7 @@ def test_all_well() -> None:
     values = {item.key: item.value for item in told.values}
     assert values["position deviation [m]"] == "0.030"
     assert values["heading deviation [rad]"] == "0.010"
-    assert values["searches refused"] == "ambiguous 3, low_support 1"
+    assert values["searches rejected"] == "ambiguous 3, low_support 1"
     assert values["support"] == "0.92"
 
 

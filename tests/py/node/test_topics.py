@@ -221,7 +221,7 @@ def test_diagnostics_while_mapping(client: Client, robot: Robot, path: str) -> N
     assert int(now["nodes"]) == client.call("map/num_nodes")
     assert now["scans dropped"] == before["scans dropped"]
     assert 10.0 < float(now["scan rate [Hz]"]) < 110.0  # over the last five seconds
-    assert float(now["hit fraction"]) > 0.8
+    assert float(now["inlier ratio"]) > 0.8
     assert 0.0 < float(now["ms per scan, median"]) < float(now["delay [ms], worst"])
 
 

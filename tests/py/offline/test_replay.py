@@ -112,7 +112,7 @@ def test_home_is_mapped_and_the_dock_found_again(of_bag: Replayed, of_log: Repla
         assert ate.position_rmse < 0.05
         assert ate.position_max < 0.15
         assert ate.heading_rmse < 1.5
-        assert replayed.report["docks"] == {"tried": 1, "accepted": 1, "refused": {}}
+        assert replayed.report["docks"] == {"tried": 1, "accepted": 1, "rejected": {}}
 
 
 def test_map_frame_is_that_of_the_first_sensor_pose(of_bag: Replayed, files: Path) -> None:
@@ -169,9 +169,9 @@ def test_report_holds_the_figures_and_the_parameters(of_bag: Replayed, drive: Dr
     assert report["recorded_seconds"] == pytest.approx(drive.duration)
     assert report["parameters"] == read_parameters().to_dict()
     for closures in (report["loops"], report["docks"]):
-        assert closures["accepted"] + sum(closures["refused"].values()) == closures["tried"]
+        assert closures["accepted"] + sum(closures["rejected"].values()) == closures["tried"]
     assert report["loops"]["accepted"] + report["docks"]["accepted"] == report["map"]["switchable_edges"]
-    assert sum(report["match_refusals"].values()) == report["odometry_links"]
+    assert sum(report["match_rejections"].values()) == report["odometry_links"]
     timings = report["timings"]
     per_scan = timings["ms_per_scan"]
     assert 0.0 < per_scan["p50"] <= per_scan["p95"] <= per_scan["p99"] <= per_scan["max"]

@@ -76,7 +76,7 @@ def test_closures_tells_of_each_attempt(files: Path, tmp_path: Path) -> None:
     told = Counter(row["verdict"] for row in rows)
     report = report_of(tmp_path)
     assert len(rows) == report["loops"]["tried"] > 0
-    refused = {reason: count for reason, count in report["loops"]["refused"].items() if count}
+    refused = {reason: count for reason, count in report["loops"]["rejected"].items() if count}
     assert {reason: told[reason] for reason in set(told) - {"accepted", "contradicted"}} == refused
     accepted = [row for row in rows if row["verdict"] in ("accepted", "contradicted")]
     assert len(accepted) == report["loops"]["accepted"] > 0

@@ -59,7 +59,7 @@ def straight(n: int) -> list[Pose]:
 
 
 def test_scans_are_seen_from_their_node_and_given_for_the_base() -> None:
-    results = [Result("node", 0), Result("carried", 0, (0.1, 0.0, 0.5))]
+    results = [Result("node", 0), Result("located", 0, (0.1, 0.0, 0.5))]
     recorder = record(results, straight(2), MOUNT)
     node = (1.0, 2.0, np.pi / 2)
     base = recorder.base_poses(chain([node], [node]))
@@ -69,7 +69,7 @@ def test_scans_are_seen_from_their_node_and_given_for_the_base() -> None:
 
 
 def test_unmoved_nodes_leave_the_scans_where_they_were_matched() -> None:
-    results = [Result("node", 0), Result("carried", 0, (0.11, 0.0, 0.01)), Result("node", 1), Result("carried", 1)]
+    results = [Result("node", 0), Result("located", 0, (0.11, 0.0, 0.01)), Result("node", 1), Result("carried", 1)]
     nodes = [ZERO, (0.2, 0.0, 0.0)]
     base = record(results, straight(4)).base_poses(chain(nodes, nodes))
     assert base == pytest.approx(np.array([ZERO, (0.11, 0.0, 0.01), (0.2, 0.0, 0.0), (0.2, 0.0, 0.0)]))
@@ -79,10 +79,10 @@ def test_a_moved_node_takes_the_scans_before_it_along_in_proportion() -> None:
     """The second node moved by 0.3 m aside: the scans on the way go over to it evenly, without a jump."""
     results = [
         Result("node", 0),
-        Result("carried", 0, (0.1, 0.0, 0.0)),
-        Result("carried", 0, (0.2, 0.0, 0.0)),
+        Result("located", 0, (0.1, 0.0, 0.0)),
+        Result("located", 0, (0.2, 0.0, 0.0)),
         Result("node", 1),
-        Result("carried", 1, (0.1, 0.0, 0.0)),
+        Result("located", 1, (0.1, 0.0, 0.0)),
     ]
     solved = chain([ZERO, (0.3, 0.0, 0.0)], [ZERO, (0.3, 0.3, 0.0)])
     base = record(results, straight(5)).base_poses(solved)
@@ -90,7 +90,7 @@ def test_a_moved_node_takes_the_scans_before_it_along_in_proportion() -> None:
 
 
 def test_a_turned_node_turns_the_scans_before_it_in_proportion() -> None:
-    results = [Result("node", 0), Result("carried", 0), Result("node", 1)]
+    results = [Result("node", 0), Result("located", 0), Result("node", 1)]
     solved = chain([ZERO, ZERO], [ZERO, (0.0, 0.0, 0.4)])
     base = record(results, [ZERO] * 3).base_poses(solved)
     assert base[:, 2] == pytest.approx([0.0, 0.2, 0.4])
@@ -105,7 +105,7 @@ def test_scans_before_the_first_node_are_led_back_by_odometry() -> None:
 
 
 def test_scans_that_were_not_mapped_follow_odometry_from_the_last_that_was() -> None:
-    results = [Result("node", 0), Result("carried", 0, (0.12, 0.0, 0.0)), None, None]
+    results = [Result("node", 0), Result("located", 0, (0.12, 0.0, 0.0)), None, None]
     base = record(results, straight(4)).base_poses(chain([ZERO], [ZERO]))
     assert base[:, 0] == pytest.approx([0.0, 0.12, 0.22, 0.32])
 
@@ -127,8 +127,8 @@ def test_a_node_made_between_two_scans_carries_the_scans_after_it() -> None:
     """A call may make a node of the last scan: then the scan was not yet said to be one."""
     results = [
         Result("node", 0),
-        Result("carried", 0, (0.1, 0.0, 0.0)),  # made node 1 afterwards
-        Result("carried", 1, (0.1, 0.0, 0.0)),
+        Result("located", 0, (0.1, 0.0, 0.0)),  # made node 1 afterwards
+        Result("located", 1, (0.1, 0.0, 0.0)),
         Result("node", 2),
     ]
     solved = chain(
@@ -142,7 +142,7 @@ def test_a_node_made_between_two_scans_carries_the_scans_after_it() -> None:
 
 def test_the_beginning_of_a_segment_does_not_move_the_scans_before_it() -> None:
     """A robot carried away while mapping was paused says nothing about the scans before the pause."""
-    results = [Result("node", 0), Result("carried", 0, (0.1, 0.0, 0.0)), None, Result("node", 1)]
+    results = [Result("node", 0), Result("located", 0, (0.1, 0.0, 0.0)), None, Result("node", 1)]
     solved = chain([ZERO, (0.3, 0.0, 0.0)], [ZERO, (0.3, 5.0, 0.0)])
     solved.incremental_results["target"] = np.array([0, 1])
     base = record(results, straight(4)).base_poses(solved)

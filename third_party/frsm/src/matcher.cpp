@@ -98,12 +98,12 @@ void count_hits(const Table& table, const Points& body, int hit_value, Match* ma
     if (value >= hit_value) ++match->hits;
   }
   match->points = static_cast<int>(body.size());
-  match->hit_fraction = match->hits / static_cast<double>(body.size());
+  match->inlier_ratio = match->hits / static_cast<double>(body.size());
   match->score = sum / (255.0 * static_cast<double>(body.size()));
 }
 
 Status judge(const Match& match, const MatcherParams& params) {
-  if (match.hit_fraction < params.min_hit_fraction) return Status::kLowHits;
+  if (match.inlier_ratio < params.min_inlier_ratio) return Status::kLowHits;
   if (match.saturated) return Status::kSaturated;
   return match.degenerate ? Status::kDegenerate : Status::kOk;
 }
@@ -134,7 +134,7 @@ void MatcherParams::validate() const {
   check(theta_step > 0.0 && theta_step <= 1.0, "MatcherParams.theta_step", "must be above 0 and at most 1 rad");
   check(hit_value >= 1 && hit_value <= 255, "MatcherParams.hit_value", "must be 1 to 255");
   check(min_points >= 1, "MatcherParams.min_points", "must be at least 1");
-  check(min_hit_fraction >= 0.0 && min_hit_fraction <= 1.0, "MatcherParams.min_hit_fraction", "must be 0 to 1");
+  check(min_inlier_ratio >= 0.0 && min_inlier_ratio <= 1.0, "MatcherParams.min_inlier_ratio", "must be 0 to 1");
   check(min_score >= 0.0 && min_score <= 1.0, "MatcherParams.min_score", "must be 0 to 1");
   check(information_scale > 0.0 && std::isfinite(information_scale), "MatcherParams.information_scale",
         "must be above 0");

@@ -88,7 +88,7 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
   }
   match = recover(body, time, expected, odometry.has_value(), match);
   // On the window's border but with good hits, the pose is still the best known; it must not shape the map, though.
-  const bool good = match.hit_fraction >= params_.retry_hits;
+  const bool good = match.inlier_ratio >= params_.retry_hits;
   // After a gap, a few hits among few points say little: what is seen may lie where the local map shows nothing.
   const bool told = good || match.hits >= kTellingHits * params_.matcher.min_points || drift_.isZero(0.0);
   const bool usable = (match.usable() && told) || (match.status == Status::kSaturated && good);
@@ -237,8 +237,8 @@ Match Tracker::try_match(const Points& body, const Prior& prior, double widen) c
 
 // Another match takes the place of the best one if clearly more points hit, or if it is free of the window's border.
 bool Tracker::consider(const Match& other, Match& best) {
-  const bool freed = best.saturated && !other.saturated && other.hit_fraction >= best.hit_fraction;
-  const bool better = freed || other.hit_fraction > best.hit_fraction + kWorthwhileHits;
+  const bool freed = best.saturated && !other.saturated && other.inlier_ratio >= best.inlier_ratio;
+  const bool better = freed || other.inlier_ratio > best.inlier_ratio + kWorthwhileHits;
   if (better) best = other;
   return better;
 }
@@ -248,7 +248,7 @@ bool Tracker::consider(const Match& other, Match& best) {
 Match Tracker::recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best) {
   const auto poor = [&] {
     return best.status == Status::kNoOverlap ||
-           (best.points >= params_.matcher.min_points && (best.saturated || best.hit_fraction < params_.retry_hits));
+           (best.points >= params_.matcher.min_points && (best.saturated || best.inlier_ratio < params_.retry_hits));
   };
   if (params_.retry_hits <= 0.0 || !poor()) return best;
   ++retries_;
@@ -264,11 +264,11 @@ Match Tracker::recover(const Points& body, double time, const Prior& expected, b
 
 bool Tracker::should_add(const Match& match) const {
   const AddRule& rule = params_.add;
-  if (match.hit_fraction < rule.min_hits) return false;
+  if (match.inlier_ratio < rule.min_hits) return false;
   const double moved = distance(match.pose, last_added_);
   const double turned = std::abs(wrap(match.pose.theta - last_added_.theta));
   if (moved < rule.min_distance && turned < rule.min_angle) return false;
-  return moved >= rule.key_distance || turned >= rule.key_angle || match.hit_fraction < rule.hit_threshold;
+  return moved >= rule.key_distance || turned >= rule.key_angle || match.inlier_ratio < rule.hit_threshold;
 }
 
 void Tracker::remember(const Pose& pose, double time, const Eigen::Matrix3d& drift, bool usable) {

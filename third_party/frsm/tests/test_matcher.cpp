@@ -225,7 +225,7 @@ TEST(Matcher, StrangeSceneIsLowHits) {
   }
   const Match match = Matcher().match(draw(drawn, {0.0, 0.5, 0.0}), strange, {0.0, 0.5, 0.0}, {0.1, 0.1, 0.1}, nullptr);
   EXPECT_EQ(match.status, Status::kLowHits);
-  EXPECT_LT(match.hit_fraction, 0.4);
+  EXPECT_LT(match.inlier_ratio, 0.4);
 }
 
 TEST(Matcher, RefusesInputThatMakesNoSense) {

@@ -68,7 +68,7 @@ TEST(Tracker, AddsByTheRule) {
   Points changed = steps[2].body;
   for (int i = 0; i < 40; ++i) changed[i] = {0.5 * changed[i].x, 0.5 * changed[i].y};
   const Match match = tracker.track(changed, 0.4, steps[2].odometry);
-  EXPECT_LT(match.hit_fraction, 0.9);
+  EXPECT_LT(match.inlier_ratio, 0.9);
   EXPECT_TRUE(match.usable());
   const int before = tracker.num_scans();
   tracker.track(steps[2].body, 0.5, std::nullopt);
@@ -221,7 +221,7 @@ TEST(Tracker, AFewHitsAfterAGapAreNotBelieved) {
   const Points few = test::scan(behind, {0.0, 0.0, kPi}, {25, 0.6, 3.0, 0.005}, random);
   ASSERT_GE(few.size(), 10U);
   const Match match = tracker.track(few, 0.7, turn);
-  EXPECT_TRUE(!tracker.matched() || match.hit_fraction >= 0.8) << to_string(match.status) << " " << match.hit_fraction;
+  EXPECT_TRUE(!tracker.matched() || match.inlier_ratio >= 0.8) << to_string(match.status) << " " << match.inlier_ratio;
 }
 
 TEST(Tracker, TwoRunsGiveTheSameBytes) {

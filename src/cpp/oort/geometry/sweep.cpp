@@ -34,7 +34,7 @@ Sweep sweep_of_sensor(const Sweep& sweep_of_base, const Pose2& T_base_sensor) {
           T_sensor_base * sweep_of_base.T_stamp_last * T_base_sensor};
 }
 
-PointCloud compensate_motion(PointCloud cloud, const Sweep& sweep) {
+PointCloud deskew(PointCloud cloud, const Sweep& sweep) {
   if (!is_finite(sweep.T_stamp_first) || !is_finite(sweep.T_stamp_last)) {
     throw InputError("scan: the motion while it was taken is not finite; check the transform odom -> base");
   }

@@ -24,6 +24,6 @@ Sweep sweep_of_sensor(const Sweep& sweep_of_base, const Pose2& T_base_sensor);
 /// Brings each beam of a cloud from where the sensor was when it was measured to where it was at the stamp (the cloud's
 /// `time`). The beams came evenly in their order. Points move, and bearings of beams without a reading turn; what is a
 /// return and what is not stays. Throws InputError if the sweep is not finite.
-PointCloud compensate_motion(PointCloud cloud, const Sweep& sweep_of_sensor);
+PointCloud deskew(PointCloud cloud, const Sweep& sweep_of_sensor);
 
 }  // namespace oort

@@ -26,7 +26,7 @@ struct Constraint {
   ConstraintType type = ConstraintType::kLaser;
 };
 
-/// A link that is always believed: between consecutive nodes of a chain, or from a chain to the next.
+/// A link that is always believed: between consecutive nodes of a trajectory, or from a segment to the next.
 struct Edge {
   std::uint64_t id = 0;  ///< one counter serves both kinds of edges
   std::uint64_t i = 0;

@@ -44,7 +44,7 @@ void check_observation(const LandmarkObservation& observation, std::size_t numbe
   }
 }
 
-Eigen::Matrix3d whitening_or_refuse(const Eigen::Matrix3d& covariance, Whitening whitening, const std::string& whose) {
+Eigen::Matrix3d whitening_or_throw(const Eigen::Matrix3d& covariance, Whitening whitening, const std::string& whose) {
   try {
     return whitening_matrix(covariance, whitening);
   } catch (const InputError& error) {
@@ -75,7 +75,7 @@ class HuberProblem {
       const Pose2 sensor = interpolate(pose_of(nodes_[o.before]), pose_of(nodes_[o.after]), o.fraction);
       Block& landmark = landmarks_.try_emplace(o.landmark, block_of(sensor * o.T_sensor_landmark)).first->second;
       const Eigen::Matrix3d W =
-          whitening_or_refuse(o.covariance, options_.whitening, "landmark observation " + std::to_string(k));
+          whitening_or_throw(o.covariance, options_.whitening, "landmark observation " + std::to_string(k));
       add_observation(o, W, landmark);
     }
   }
@@ -113,7 +113,7 @@ class HuberProblem {
 
   template <typename AnyEdge>
   void add_link(const AnyEdge& edge, ceres::LossFunction* loss) {
-    const Eigen::Matrix3d W = whitening_or_refuse(edge.constraint.covariance, options_.whitening, describe(edge));
+    const Eigen::Matrix3d W = whitening_or_throw(edge.constraint.covariance, options_.whitening, describe(edge));
     problem_.AddResidualBlock(new RelativePoseCost(edge.constraint.T_i_j, W), loss, nodes_[edge.i].data(),
                               nodes_[edge.j].data());
   }

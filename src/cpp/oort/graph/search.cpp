@@ -63,18 +63,18 @@ double robust_cost(const GraphSolver& solver) {
 }
 
 void Search::run(bool decides) {
-  const bool surprised = is_surprised();
-  if (surprised) switch_all_on();
+  const bool innovation = has_large_innovation();
+  if (innovation) switch_all_on();
   if (!decides) {
     solve_switches(0.0, GraphTuning::kTolerance, max_iterations_, max_iterations_);
     return;
   }
-  if (surprised) find_best_start();
+  if (innovation) find_best_start();
   decide();
 }
 
 /// Whether a link that was on is far off at the poses as they are; for a firm one, farther than it already was.
-bool Search::is_surprised() const {
+bool Search::has_large_innovation() const {
   return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
     if (!link.switchable || link.s <= agreeing_switch(link)) return false;
     const double known = is_firm(link) ? solver_.squared_error_at(link, link.s) : 0.0;
@@ -91,9 +91,9 @@ void Search::switch_all_on() {
   for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
 }
 
-/// From the poses as they are, and from those of the chain alone, which false links have not bent yet; from the better
-/// ones with firm links believed; then once more, without the links that are off there, so that those in doubt get a
-/// second chance.
+/// From the poses as they are, and from those of the trajectory alone, which false links have not bent yet; from the
+/// better ones with firm links believed; then once more, without the links that are off there, so that those in doubt
+/// get a second chance.
 void Search::find_best_start() {
   std::vector<Pose2> best = solver_.poses();
   double least = robust_cost(solver_);
@@ -108,10 +108,10 @@ void Search::find_best_start() {
       best = solver_.poses();
     }
   };
-  std::vector<Pose2> chain = chained_poses(solver_);
+  std::vector<Pose2> dead_reckoned = chained_poses(solver_);
   const bool is_chain = believed_cost(solver_) < GraphTuning::kNoCost;
   try_from(best, 0.0);
-  if (!is_chain && !is_dear_) try_from(std::move(chain), 0.0);
+  if (!is_chain && !is_dear_) try_from(std::move(dead_reckoned), 0.0);
   const auto& links = solver_.links();
   if (std::any_of(links.begin(), links.end(), is_firm)) try_from(best, GraphTuning::kOffWhileSearching, true);
   try_from(best, GraphTuning::kOffWhileSearching);

@@ -12,9 +12,9 @@ double robust_cost(const GraphSolver& solver);
 
 /// The way to the solution (docs/optimiser.md).
 ///
-/// If no link that was on surprises, all that is left to do is to decide anew which agree. Else what was believed may
-/// be wrong: all switches start at 1 again, so that links that were off together can come back together; a solution
-/// that costs more than the poses that were there is dropped.
+/// If no link that was on has a large innovation, all that is left to do is to decide anew which agree. Else what was
+/// believed may be wrong: all switches start at 1 again, so that links that were off together can come back together; a
+/// solution that costs more than the poses that were there is dropped.
 class Search {
  public:
   Search(GraphSolver& solver, int max_iterations) : solver_(solver), max_iterations_(max_iterations) {}
@@ -26,7 +26,7 @@ class Search {
   GraphSolver::Progress progress() const { return progress_; }
 
  private:
-  bool is_surprised() const;
+  bool has_large_innovation() const;
   double agreeing_switch(const Link& link) const;
   void switch_all_on();
   void find_best_start();

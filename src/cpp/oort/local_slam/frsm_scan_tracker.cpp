@@ -28,7 +28,8 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   return params;
 }
 
-/// Why the tracker did not take a match: it asks for more hits than the matcher after scans without a match.
+/// Why the tracker did not take a match: it asks for a higher inlier ratio than the matcher after scans without a
+/// match.
 Rejection rejection_of_unmatched(frsm::Status status) {
   return status == frsm::Status::kOk ? Rejection::kFewHitsAfterGap : rejection_of(status);
 }
@@ -53,7 +54,7 @@ TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, cons
   tracked.T_local_sensor = from_frsm(match.pose);
   tracked.information = match.information;
   tracked.covariance = match.covariance;
-  tracked.hit_fraction = match.hit_fraction;
+  tracked.inlier_ratio = match.inlier_ratio;
   tracked.degenerate = match.degenerate;
   tracked.hypothesis = tracker_.hypothesis();
   tracked.restarted = tracker_.restarts() > restarts;

@@ -67,7 +67,7 @@ TrackedScan GridScanTracker::track(const frsm::Points& points, double /*time*/, 
   TrackedScan tracked = match(near, expected);
   for (std::size_t k = 0; k < alternatives.size(); ++k) {
     TrackedScan other = match(near, pose_ * alternatives[k].T_before_after);
-    if (other.hit_fraction <= tracked.hit_fraction + LocalSlamTuning::kAlternativeGain) continue;
+    if (other.inlier_ratio <= tracked.inlier_ratio + LocalSlamTuning::kAlternativeGain) continue;
     expected = pose_ * alternatives[k].T_before_after;
     tracked = other;
     tracked.hypothesis = k + 1;
@@ -131,17 +131,17 @@ TrackedScan GridScanTracker::match(const Points& points, const Pose2& expected) 
   // How much hits is always judged on the coarse grid: in a finer one a sparse scan leaves gaps.
   score_pose(grids_.grid(kSearchGrid), points, best);
   take(best, tracked);
-  tracked.hit_fraction = best.hit_fraction;
+  tracked.inlier_ratio = best.inlier_ratio;
   if (p.use_second_stage_matcher) {
-    tracked.first_stage = CoarseMatch{best.pose, best.hit_fraction};
+    tracked.first_stage = CoarseMatch{best.pose, best.inlier_ratio};
     ScanMatch second = CeresMatcher(grids_.grid(p.use_ceres_refinement ? kRefinementGrid + 1 : kRefinementGrid),
                                     p.second_stage_matcher.ceres_scan_matcher)
                            .match(points, best.pose);
     score_pose(grids_.grid(kSearchGrid), points, second);
     take(second, tracked);
-    tracked.hit_fraction = second.hit_fraction;
+    tracked.inlier_ratio = second.inlier_ratio;
   }
-  if (tracked.hit_fraction < p.min_sm_accept_score) tracked.rejection = Rejection::kLowScore;
+  if (tracked.inlier_ratio < p.min_sm_accept_score) tracked.rejection = Rejection::kLowScore;
   return tracked;
 }
 

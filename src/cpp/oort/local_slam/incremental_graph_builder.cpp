@@ -23,7 +23,7 @@ double extent_of(const frsm::Points& points) {
   return std::sqrt(std::max(squares / n - (x * x + y * y) / (n * n), 0.0));
 }
 
-/// Next to nothing is known, yet a link of it is one that submaps may be drawn over (Chains).
+/// Next to nothing is known, yet a link of it is one that submaps may be drawn over (TrajectorySegments).
 Eigen::Matrix3d diffuse_covariance() {
   return LocalSlamTuning::kDiffuseVariance * Eigen::Matrix3d::Identity();
 }
@@ -43,12 +43,12 @@ OdometryModel odometry_model(const OdometryNoiseParameters& p) {
 }  // namespace
 
 LinkParameters link_parameters(const IncrementalGraphBuilderParameters& parameters) {
-  const auto of = [](const auto& p, double min_hits, bool odometry_is_prior) {
+  const auto of = [](const auto& p, double min_inlier_ratio, bool odometry_is_prior) {
     return LinkParameters{p.scanmatch_cov_scale,
                           p.inflate_scanmatch_cov_scale,
                           p.resume_scanmatch_cov_scale,
                           p.heading_error_per_meter,
-                          min_hits,
+                          min_inlier_ratio,
                           odometry_is_prior};
   };
   if (parameters.scanmatcher == "cartographer_matcher") {
@@ -81,7 +81,7 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
 }
 
 bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
-  return scan.usable() && scan.hit_fraction >= link_.min_hits;
+  return scan.usable() && scan.inlier_ratio >= link_.min_inlier_ratio;
 }
 
 MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
@@ -93,7 +93,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
   const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
   link.rejection = match_rejection(parameters_, node, T_local_anchor, T_anchor_node_odometry);
   const bool comparable = motion_model_ && link_.odometry_is_prior;
-  if (comparable && node.hit_fraction >= LocalSlamTuning::kTellingInliers && is_too_far(link.rejection)) {
+  if (comparable && node.inlier_ratio >= LocalSlamTuning::kTellingInliers && is_too_far(link.rejection)) {
     link.contradicts_odometry = true;
     link.T_anchor_node_weighed = T_anchor_node_odometry;
   }
@@ -101,7 +101,7 @@ MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2
                                      link.T_anchor_node.translation().norm());
   if (motion_model_ && link.rejection == Rejection::kNone) {
     if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, doubt, link);
-    const bool telling = doubt.isZero(0.0) && !node.degenerate && node.hit_fraction >= LocalSlamTuning::kTellingInliers;
+    const bool telling = doubt.isZero(0.0) && !node.degenerate && node.inlier_ratio >= LocalSlamTuning::kTellingInliers;
     if (telling) odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
   }
   return link;

@@ -31,7 +31,7 @@ struct LinkParameters {
   double inflate_scanmatch_cov_scale = 1.0;  ///< of the first link after a pause,
   double resume_scanmatch_cov_scale = 1.0;   ///< and of a session's first
   double heading_error_per_meter = 0.0;      ///< [rad/m]
-  double min_hits = 0.0;                     ///< least share of hits of a match that is believed
+  double min_inlier_ratio = 0.0;             ///< least of a match that is accepted
   /// Whether odometry, as uncertain as it is, is the matcher's prior, so that a match farther from it contradicts it.
   bool odometry_is_prior = false;
 };
@@ -53,7 +53,7 @@ class IncrementalGraphBuilder {
   TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
                     const std::vector<Pose2>& alternatives = {});
 
-  /// Whether a scan's match says where it is: usable, and with hits enough to be believed.
+  /// Whether a scan's match says where it is: usable, and with an inlier ratio that is accepted.
   bool is_placed(const TrackedScan& scan) const;
 
   /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor,

@@ -21,7 +21,7 @@ void check_odometry(const LaserScan& scan, const Pose2& T_odom_base) {
 
 }  // namespace
 
-LocalSlam::LocalSlam(const Parameters& parameters) : parameters_(parameters), chain_(parameters) {}
+LocalSlam::LocalSlam(const Parameters& parameters) : parameters_(parameters), trajectory_(parameters) {}
 
 void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
   if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
@@ -31,19 +31,19 @@ void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
 
 void LocalSlam::begin_map() {
   monitor_.forget();
-  chain_.begin_map();
+  trajectory_.begin_map();
   last_.reset();
 }
 
 void LocalSlam::begin_session(const SessionStart& start, std::uint64_t node_count) {
   monitor_.forget();
-  chain_.begin_session(start, node_count);
+  trajectory_.begin_session(start, node_count);
   last_.reset();
 }
 
 void LocalSlam::interrupt() {
   monitor_.forget();
-  chain_.interrupt();
+  trajectory_.interrupt();
 }
 
 LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
@@ -58,9 +58,9 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
   if (!can_match) ++counts_.scans_too_small;
   bool due = can_match && is_due(now);
   if (can_match && (due || parameters_.incremental_graph_builder.match_every_scan)) {
-    chain_.track(now, hypotheses, T_base_sensor_);
+    trajectory_.track(now, hypotheses, T_base_sensor_);
   } else {
-    chain_.extrapolate(now);
+    trajectory_.extrapolate(now);
   }
   now.missed = now.missed || !can_match;
   due = due || has_moved_unnoticed(now);
@@ -68,29 +68,29 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
   if (last_) monitor_.moved(between(last_->T_odom_base, now.T_odom_base), now.odometry_is_wrong);
 
   Result result;
-  result.outcome = due ? ScanOutcome::kNode : can_match ? ScanOutcome::kCarried : ScanOutcome::kSkipped;
-  if (due) result.node = chain_.add_node(now);
+  result.outcome = due ? ScanOutcome::kNode : can_match ? ScanOutcome::kLocated : ScanOutcome::kSkipped;
+  if (due) result.node = trajectory_.add_node(now);
   last_ = std::move(now);
   return result;
 }
 
-std::optional<ChainNode> LocalSlam::make_node() {
+std::optional<TrajectoryNode> LocalSlam::make_node() {
   if (last_->is_node || !has_returns(*last_)) return std::nullopt;
-  if (!last_->was_tracked) chain_.track(*last_, {}, T_base_sensor_);
-  return chain_.add_node(*last_);
+  if (!last_->was_tracked) trajectory_.track(*last_, {}, T_base_sensor_);
+  return trajectory_.add_node(*last_);
 }
 
 // Odometry's own scales of way and turn are off by little over the length of a scan: the motion is taken as measured.
 PointCloud LocalSlam::deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const {
   PointCloud cloud = to_point_cloud(scan);
   if (!parameters_.motion_compensation) return cloud;
-  return compensate_motion(std::move(cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
+  return deskew(std::move(cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
 }
 
 /// Where odometry, with what it is always wrong by taken out of each motion, has the base; or where it likelier is, if
 /// no robot moves as odometry says. Returns what the base may have done since the last scan.
 MotionHypotheses LocalSlam::expect(LocalScan& scan) {
-  const IncrementalGraphBuilder& matcher = chain_.matcher();
+  const IncrementalGraphBuilder& matcher = trajectory_.matcher();
   scan.T_odom_base = scan.T_odom_base_measured;
   MotionHypotheses hypotheses;
   if (last_ && matcher.knows_odometry()) {
@@ -109,17 +109,17 @@ bool LocalSlam::has_returns(const LocalScan& scan) const {
 
 /// The motion gate: whether the base has moved so far that a node is due.
 bool LocalSlam::is_due(const LocalScan& scan) const {
-  if (!chain_.is_going_on()) return true;
-  const double since = std::abs(scan.cloud.time - chain_.newest_time());  // a clock may have been set back
+  if (!trajectory_.is_going_on()) return true;
+  const double since = std::abs(scan.cloud.time - trajectory_.newest_time());  // a clock may have been set back
   if (parameters_.time_update > 0.0 && since >= parameters_.time_update) return true;
-  const Pose2 moved = between(chain_.T_odom_base_newest(), scan.T_odom_base);
+  const Pose2 moved = between(trajectory_.T_odom_base_newest(), scan.T_odom_base);
   return moved.translation().norm() >= parameters_.linear_update || std::abs(moved.theta) >= parameters_.angular_update;
 }
 
-/// Wheels that slip, or a robot that is carried: its scans tell of a motion that odometry does not.
+/// Wheels that slip, or a kidnapped robot: its scans tell of a motion that odometry does not.
 bool LocalSlam::has_moved_unnoticed(const LocalScan& scan) const {
-  if (!chain_.is_going_on() || !scan.tracked.usable() || !chain_.matcher().knows_odometry()) return false;
-  const Pose2 moved = T_base_sensor_ * chain_.from_newest(scan.tracked.T_local_sensor) * inverse(T_base_sensor_);
+  if (!trajectory_.is_going_on() || !scan.tracked.usable() || !trajectory_.matcher().knows_odometry()) return false;
+  const Pose2 moved = T_base_sensor_ * trajectory_.from_newest(scan.tracked.T_local_sensor) * inverse(T_base_sensor_);
   return moved.translation().norm() >= LocalSlamTuning::kUnnoticedMotion * parameters_.linear_update ||
          std::abs(moved.theta) >= LocalSlamTuning::kUnnoticedMotion * parameters_.angular_update;
 }

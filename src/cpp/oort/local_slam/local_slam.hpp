@@ -7,7 +7,7 @@
 
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/geometry/sweep.hpp"
-#include "oort/local_slam/chain_builder.hpp"
+#include "oort/local_slam/trajectory_builder.hpp"
 #include "oort/odometry/odometry_monitor.hpp"
 #include "oort/parameters/parameters.hpp"
 
@@ -15,13 +15,13 @@ namespace oort {
 
 enum class ScanOutcome {
   kNode,     ///< the scan made a node
-  kCarried,  ///< it was located relative to the last node
+  kLocated,  ///< it was located relative to the last node
   kSkipped,  ///< it had too few returns: located by odometry alone, if there is a node to be relative to
 };
 
 struct LocalCounts {
   std::uint64_t scans = 0;
-  std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: carried by odometry
+  std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: extrapolated by odometry
 };
 
 /// The local lane: a scan with odometry in, its pose relative to the newest node out. The work for a scan is bounded by
@@ -30,7 +30,7 @@ class LocalSlam {
  public:
   struct Result {
     ScanOutcome outcome = ScanOutcome::kSkipped;
-    std::optional<ChainNode> node;  ///< that the scan made
+    std::optional<TrajectoryNode> node;  ///< that the scan made
   };
 
   explicit LocalSlam(const Parameters& parameters);
@@ -47,23 +47,23 @@ class LocalSlam {
   Result add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base);
 
   /// Makes the latest scan a node if it is none and has returns enough.
-  std::optional<ChainNode> make_node();
+  std::optional<TrajectoryNode> make_node();
 
   /// Whether the next scan begins a map.
-  bool begins_map() const { return chain_.begins_map(); }
+  bool begins_map() const { return trajectory_.begins_map(); }
   /// Whether the latest scan is located relative to a node.
-  bool has_pose() const { return last_.has_value() && chain_.is_going_on(); }
+  bool has_pose() const { return last_.has_value() && trajectory_.is_going_on(); }
   /// The latest scan. There must be one.
   const LocalScan& last_scan() const { return *last_; }
   bool has_scan() const { return last_.has_value(); }
   /// Where the latest scan was taken, as odometry has it.
   Pose2 T_odom_sensor_measured() const { return last_->T_odom_base_measured * T_base_sensor_; }
-  std::uint64_t newest_node() const { return chain_.newest_node(); }
-  Pose2 T_newest_sensor() const { return chain_.from_newest(last_->tracked.T_local_sensor); }
+  std::uint64_t newest_node() const { return trajectory_.newest_node(); }
+  Pose2 T_newest_sensor() const { return trajectory_.from_newest(last_->tracked.T_local_sensor); }
 
   const LocalCounts& counts() const { return counts_; }
   const OdometryMonitor& odometry_monitor() const { return monitor_; }
-  const ChainCounts& chain_counts() const { return chain_.counts(); }
+  const TrajectoryCounts& trajectory_counts() const { return trajectory_.counts(); }
 
  private:
   PointCloud deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const;
@@ -75,7 +75,7 @@ class LocalSlam {
   Parameters parameters_;
   Pose2 T_base_sensor_;
   OdometryMonitor monitor_;
-  ChainBuilder chain_;
+  TrajectoryBuilder trajectory_;
   std::optional<LocalScan> last_;
   LocalCounts counts_;
 };

@@ -22,7 +22,7 @@ struct Motion {
 /// What a matcher said before a finer one took over.
 struct CoarseMatch {
   Pose2 T_local_sensor;
-  double hit_fraction = 0.0;
+  double inlier_ratio = 0.0;
 };
 
 /// Where the scan matcher says the sensor is, in its own ("local") frame.
@@ -30,7 +30,7 @@ struct TrackedScan {
   Pose2 T_local_sensor;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the match alone, axes of the local frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();   ///< of the match and what was expected, same axes
-  double hit_fraction = 0.0;
+  double inlier_ratio = 0.0;
   double extent = 0.0;      ///< root mean square distance of the returns from their middle [m]
   bool degenerate = false;  ///< the match leaves a direction open
   bool restarted = false;   ///< a fresh local map begins with this scan: the old one did not fit any more

@@ -8,24 +8,24 @@
 
 namespace oort {
 
-void TrackingMonitor::hang_loosely(std::uint64_t first_node, bool is_guess) {
-  if (!is_loose_) loose_begin_ = first_node;
-  is_guess_ = is_guess || (is_loose_ && is_guess_);
-  is_loose_ = true;
+void TrackingMonitor::add_untied(std::uint64_t first_node, bool is_guess) {
+  if (!is_untied_) untied_begin_ = first_node;
+  is_guess_ = is_guess || (is_untied_ && is_guess_);
+  is_untied_ = true;
 }
 
-void TrackingMonitor::look_for_tie(const Graph& graph, std::uint64_t chain_begin) {
-  if (!is_loose_) return;
+void TrackingMonitor::look_for_tie(const Graph& graph, std::uint64_t segment_begin) {
+  if (!is_untied_) return;
   const auto ties = [&](const SwitchableEdge& edge) {
-    return edge.is_on() && std::max(edge.i, edge.j) >= chain_begin && std::min(edge.i, edge.j) < loose_begin_;
+    return edge.is_on() && std::max(edge.i, edge.j) >= segment_begin && std::min(edge.i, edge.j) < untied_begin_;
   };
-  is_loose_ = std::none_of(graph.switchable_edges.begin(), graph.switchable_edges.end(), ties);
+  is_untied_ = std::none_of(graph.switchable_edges.begin(), graph.switchable_edges.end(), ties);
 }
 
 TrackingState TrackingMonitor::update(bool missed) {
   missed_in_a_row_ = missed ? missed_in_a_row_ + 1 : 0;
-  if (missed_in_a_row_ >= LocalSlamTuning::kLostScans || (is_loose_ && is_guess_)) return TrackingState::kLost;
-  return is_loose_ || missed ? TrackingState::kUncertain : TrackingState::kTracking;
+  if (missed_in_a_row_ >= LocalSlamTuning::kLostScans || (is_untied_ && is_guess_)) return TrackingState::kLost;
+  return is_untied_ || missed ? TrackingState::kUncertain : TrackingState::kTracking;
 }
 
 }  // namespace oort

@@ -10,7 +10,7 @@ namespace oort {
 /// How well the sensor's place on the map is known after a scan (docs/tracking.md).
 enum class TrackingState {
   kTracking,   ///< the scan was placed by what it shows
-  kUncertain,  ///< odometry alone says where it is, or its chain hangs loosely on the map
+  kUncertain,  ///< odometry alone says where it is, or its segment is untied
   kLost,       ///< it has been odometry alone for long, or neither odometry nor the scans are to be believed
 };
 
@@ -19,18 +19,19 @@ class TrackingMonitor {
  public:
   /// Nodes from this one on hang loosely on those before: what led from one to the other is not known. `is_guess`: and
   /// where they were put is little more than a guess. If older ones still hang loosely, all from those on do.
-  void hang_loosely(std::uint64_t first_node, bool is_guess);
+  void add_untied(std::uint64_t first_node, bool is_guess);
 
-  /// Looks whether a closure that is on ties the newest chain, which begins with the node `chain_begin`, to the map.
-  void look_for_tie(const Graph& graph, std::uint64_t chain_begin);
+  /// Looks whether a closure that is on ties the newest segment, which begins with the node `segment_begin`, to the
+  /// map.
+  void look_for_tie(const Graph& graph, std::uint64_t segment_begin);
 
   /// Takes the next scan. `missed`: the scan matcher was asked and could not place it.
   TrackingState update(bool missed);
 
  private:
-  bool is_loose_ = false;
+  bool is_untied_ = false;
   bool is_guess_ = false;
-  std::uint64_t loose_begin_ = 0;
+  std::uint64_t untied_begin_ = 0;
   int missed_in_a_row_ = 0;
 };
 

@@ -7,7 +7,7 @@
 
 #include "oort/grid/range_data.hpp"
 #include "oort/localization/tuning.hpp"
-#include "oort/loop_closure/facing.hpp"
+#include "oort/loop_closure/normal_consistency.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {

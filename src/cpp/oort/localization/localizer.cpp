@@ -50,7 +50,7 @@ Localizer::Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& 
       parameters_(parameters.localization.tracking),
       kept_parameters_(parameters.localization.relocalizer),
       min_points_(parameters.min_pointcloud_size),
-      compensates_motion_(parameters.motion_compensation),
+      deskews_(parameters.motion_compensation),
       T_base_sensor_(T_base_sensor),
       odometry_model_(model_of(parameters.incremental_graph_builder.odometry_noise)),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
@@ -78,7 +78,7 @@ void Localizer::start_searching() {
   rival_.reset();
   probation_ = 0.0;
   views_.clear();
-  doubtful_way_ = 0.0;
+  doubtful_travel_ = 0.0;
   doubtful_scans_ = 0;
   state_ = LocalizationState::kSearching;
 }
@@ -86,8 +86,8 @@ void Localizer::start_searching() {
 LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
   check_reach(T_odom_base, "localisation: the odometry pose", "check the transform odom -> base");
   PlacedScan now{to_point_cloud(scan), T_odom_base * T_base_sensor_};
-  if (compensates_motion_) {
-    now.cloud = compensate_motion(std::move(now.cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
+  if (deskews_) {
+    now.cloud = deskew(std::move(now.cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
   }
   ++statistics_.scans;
   predict(now.T_odom_sensor);
@@ -117,8 +117,8 @@ void Localizer::predict(const Pose2& T_odom_sensor) {
       model.translation_floor = model.rotation_floor = 0.0;
       covariance_ = compound_covariance(*T_map_sensor_, covariance_, motion, model.covariance(motion));
       T_map_sensor_ = *T_map_sensor_ * motion;
-      doubtful_way_ += motion.translation().norm();
-      way_ += motion.translation().norm();
+      doubtful_travel_ += motion.translation().norm();
+      travel_ += motion.translation().norm();
     }
   }
   T_odom_sensor_ = T_odom_sensor;
@@ -134,12 +134,12 @@ void Localizer::follow(const PointCloud& cloud) {
     return;
   }
   ++statistics_.matched;
-  const bool surprises = is_seen_ && is_surprise(*found);
+  const bool innovation = is_seen_ && has_innovation(*found);
   T_map_sensor_ = found->T_map_sensor;
   is_seen_ = true;
   covariance_ = floored(found->covariance);
-  probation_ = surprises ? parameters_.doubt_distance : probation_ - doubtful_way_;
-  doubtful_way_ = 0.0;
+  probation_ = innovation ? parameters_.doubt_distance : probation_ - doubtful_travel_;
+  doubtful_travel_ = 0.0;
   doubtful_scans_ = 0;
 }
 
@@ -173,7 +173,7 @@ bool Localizer::is_expected(const Hypothesis& found) const {
   return d.dot(floored(covariance_).ldlt().solve(d)) <= LocalizationTuning::kMaxInnovation;
 }
 
-bool Localizer::is_surprise(const Hypothesis& found) const {
+bool Localizer::has_innovation(const Hypothesis& found) const {
   const Pose2 moved = between(*T_map_sensor_, found.T_map_sensor);
   return moved.translation().norm() > LocalizationTuning::kInnovationXy ||
          (doubtful_scans_ >= LocalizationTuning::kFewScans &&
@@ -206,7 +206,7 @@ void Localizer::search(const PlacedScan& scan) {
   T_odom_sensor_ = scan.T_odom_sensor;
   covariance_ = floored(found.best->covariance);
   support_ = found.best->support.value();
-  doubtful_way_ = 0.0;
+  doubtful_travel_ = 0.0;
   doubtful_scans_ = 0;
   state_ = judge();
 }
@@ -219,19 +219,19 @@ bool Localizer::may_jump(const Hypothesis& found, const PlacedScan& scan) {
     const Pose2 apart = between(rival_->T_map_odom * scan.T_odom_sensor, found.T_map_sensor);
     const bool agrees = apart.translation().norm() < LocalizationTuning::kRivalXy &&
                         std::abs(apart.theta) < LocalizationTuning::kRivalTheta;
-    if (agrees) return way_ - rival_->way >= LocalizationTuning::kRivalTravel;
+    if (agrees) return travel_ - rival_->way >= LocalizationTuning::kRivalTravel;
   }
-  rival_ = Rival{T_map_odom, way_};
+  rival_ = Rival{T_map_odom, travel_};
   return false;
 }
 
 LocalizationState Localizer::judge() const {
   if (!T_map_sensor_) return LocalizationState::kSearching;
   if (deviation() > parameters_.lost_deviation ||
-      doubtful_way_ > LocalizationTuning::kLostFactor * parameters_.doubt_distance) {
+      doubtful_travel_ > LocalizationTuning::kLostFactor * parameters_.doubt_distance) {
     return LocalizationState::kLost;
   }
-  const bool in_doubt = !is_seen_ || probation_ > 0.0 || doubtful_way_ > parameters_.doubt_distance ||
+  const bool in_doubt = !is_seen_ || probation_ > 0.0 || doubtful_travel_ > parameters_.doubt_distance ||
                         doubtful_scans_ >= LocalizationTuning::kDoubtfulScans;
   return in_doubt || deviation() > parameters_.uncertain_deviation ? LocalizationState::kUncertain
                                                                    : LocalizationState::kTracking;

@@ -78,7 +78,7 @@ class Localizer {
   std::optional<Hypothesis> match(const PointCloud& cloud, Rejection& rejection);
   bool may_jump(const Hypothesis& found, const PlacedScan& scan);
   bool is_expected(const Hypothesis& found) const;
-  bool is_surprise(const Hypothesis& found) const;
+  bool has_innovation(const Hypothesis& found) const;
   bool contradicts_memory(const Hypothesis& found) const;
   void search(const PlacedScan& scan);
   LocalizationState judge() const;
@@ -88,7 +88,7 @@ class Localizer {
   TrackingParameters parameters_;
   RelocalizerParameters kept_parameters_;
   int min_points_;
-  bool compensates_motion_;
+  bool deskews_;
   Pose2 T_base_sensor_;
   OdometryModel odometry_model_;
   frsm::Matcher matcher_;
@@ -102,9 +102,9 @@ class Localizer {
   double probation_ = 0.0;  // [m] of way on which scans must still fit before a search's answer is relied on
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Identity();
   double support_ = 0.0;
-  double way_ = 0.0;  // [m] in all
+  double travel_ = 0.0;  // [m] in all
   std::optional<Rival> rival_;
-  double doubtful_way_ = 0.0;  // [m] since the last match that was believed
+  double doubtful_travel_ = 0.0;  // [m] since the last match that was believed
   int doubtful_scans_ = 0;
   LocalizationStatistics statistics_;
 };

@@ -7,7 +7,7 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/localization/tuning.hpp"
-#include "oort/loop_closure/facing.hpp"
+#include "oort/loop_closure/normal_consistency.hpp"
 #include "oort/map/map_check.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
@@ -35,7 +35,7 @@ const Map& checked(const Map& map, const Parameters& parameters) {
 
 double Support::value() const {
   if (points == 0) return 0.0;
-  return (hits - LocalizationTuning::kTurnedWeight * turned - LocalizationTuning::kBlockedWeight * blocked) / points;
+  return (inliers - LocalizationTuning::kTurnedWeight * turned - LocalizationTuning::kBlockedWeight * blocked) / points;
 }
 
 ReferenceMap::ReferenceMap(const Map& map, const Parameters& parameters)
@@ -55,7 +55,7 @@ ReferenceMap::ReferenceMap(const Map& map, const Parameters& parameters)
 
 void ReferenceMap::weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Support& support) const {
   const frsm::Points points = returns_of(cloud);
-  const auto hits = [&](const Eigen::Vector2d& p) {
+  const auto is_inlier = [&](const Eigen::Vector2d& p) {
     return fine_.value(fine_.index(p.x()), fine_.index(p.y())) >= hit_value_;
   };
   for (const frsm::Point& point : points) {
@@ -63,8 +63,8 @@ void ReferenceMap::weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Sup
     ++support.points;
     if (space_.is_blocked(T_map_sensor.translation(), p, LocalizationTuning::kBlockedMargin)) {
       ++support.blocked;
-    } else if (hits(p)) {
-      ++support.hits;
+    } else if (is_inlier(p)) {
+      ++support.inliers;
     } else if (space_.is_free(p)) {
       ++support.in_free;
     }
@@ -72,7 +72,7 @@ void ReferenceMap::weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Sup
   const Eigen::Matrix2d R = rotation(T_map_sensor.theta);
   for (const SurfacePoint& surface : surface_points(points)) {
     const Eigen::Vector2d p = T_map_sensor * surface.position;
-    if (!hits(p)) continue;
+    if (!is_inlier(p)) continue;
     const KnownSpace::Facing facing = space_.facing(p, R * surface.normal);
     if (facing != KnownSpace::Facing::kUnknown) ++support.surfaces;
     if (facing == KnownSpace::Facing::kOther) ++support.turned;

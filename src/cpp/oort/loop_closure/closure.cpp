@@ -17,7 +17,7 @@ double add_closure(const Closure& closure, std::uint64_t edge_id, Map& map) {
        {map.clouds[closure.from].time, closure.from, closure.T_from_to, closure.covariance, ConstraintType::kLaser},
        1.0,
        closure.firmness});
-  map.loop_results.push_back({closure.from, closure.to, closure.T_from_to, closure.covariance, closure.hit_fraction});
+  map.loop_results.push_back({closure.from, closure.to, closure.T_from_to, closure.covariance, closure.inlier_ratio});
   return error.dot(closure.covariance.ldlt().solve(error));
 }
 

@@ -17,7 +17,7 @@ struct Closure {
   std::uint64_t to = 0;
   Pose2 T_from_to;
   Eigen::Matrix3d covariance;  ///< along the axes of node `from`
-  double hit_fraction = 0.0;
+  double inlier_ratio = 0.0;
   double firmness = 1.0;  ///< how many times as much as usual it costs to switch it off
 };
 

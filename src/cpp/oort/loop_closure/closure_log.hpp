@@ -16,7 +16,7 @@ struct ClosureAttempt {
   std::uint64_t candidate = 0;
   Rejection rejection = Rejection::kNone;
   Pose2 T_candidate_query;    ///< where the match put the query; where the graph expected it, if there is no match
-  double hit_fraction = 0.0;  ///< of the match that was looked at last
+  double inlier_ratio = 0.0;  ///< of the match that was looked at last
 };
 
 /// Remembers the latest attempts to close loops, for people who tune. It holds none unless it is given room.

@@ -18,7 +18,7 @@ bool has_fallback(const DockGraphBuilderParameters& p) {
 }
 
 /// Fewer nodes fit somewhere else, too, the sooner the fewer they are: as many misses are allowed less.
-double needed_hits(const DockGraphBuilderParameters& p, std::size_t query_nodes) {
+double needed_inlier_ratio(const DockGraphBuilderParameters& p, std::size_t query_nodes) {
   if (!has_fallback(p)) return p.dock_match_min_hit_pct;
   const double share = static_cast<double>(query_nodes) / p.dock_match_submap_size;
   return p.dock_match_min_hit_pct + (1.0 - share) * (1.0 - p.dock_match_min_hit_pct);
@@ -37,14 +37,14 @@ std::uint64_t first_of_the_way_back(const DockGraphBuilderParameters& p, std::ui
 }
 
 /// Up to `size` nodes around the dock, none from `way_back` to `query`: its node and those after it, then those before.
-std::vector<PlacedNode> reference_nodes(const Map& map, const Chains& chains, std::uint64_t dock, std::size_t size,
-                                        std::uint64_t way_back, std::uint64_t query) {
+std::vector<PlacedNode> reference_nodes(const Map& map, const TrajectorySegments& segments, std::uint64_t dock,
+                                        std::size_t size, std::uint64_t way_back, std::uint64_t query) {
   std::vector<PlacedNode> nodes;
   const auto take = [&](const PlacedNode& placed) {
     if (nodes.size() < size && (placed.node < way_back || placed.node > query)) nodes.push_back(placed);
   };
-  for (const PlacedNode& placed : walk_chain(map, chains, dock, Direction::kForward, size)) take(placed);
-  const std::vector<PlacedNode> before = walk_chain(map, chains, dock, Direction::kBackward, size);
+  for (const PlacedNode& placed : walk_trajectory(map, segments, dock, Direction::kForward, size)) take(placed);
+  const std::vector<PlacedNode> before = walk_trajectory(map, segments, dock, Direction::kBackward, size);
   std::for_each(before.begin() + 1, before.end(), take);  // the dock's own node was taken
   return nodes;
 }
@@ -60,9 +60,9 @@ frsm::Points points_of(const Map& map, const std::vector<PlacedNode>& nodes) {
 
 }  // namespace
 
-DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query) {
+DockPlace nearest_dock(const Map& map, const TrajectorySegments& segments, std::uint64_t query) {
   const Pose2& here = map.graph.nodes[query].pose;
-  DockPlace nearest{chains.segment_begin(query), Pose2{}};
+  DockPlace nearest{segments.segment_begin(query), Pose2{}};
   double nearest_distance = -1.0;
   for (const Location& location : map.locations) {
     if (location.name_space != "dock") continue;
@@ -80,7 +80,7 @@ void make_dock_closures_firm(Map& map, double firmness) {
   for (SwitchableEdge& edge : map.graph.switchable_edges) {
     if (edge.i > edge.j) continue;
     const auto matched_it = [&edge](const LoopResult& result) {
-      return result.id == edge.i && result.target == edge.j && result.hit_fraction > 0.0;
+      return result.id == edge.i && result.target == edge.j && result.inlier_ratio > 0.0;
     };
     if (std::any_of(map.loop_results.begin(), map.loop_results.end(), matched_it)) edge.firmness = firmness;
   }
@@ -92,10 +92,10 @@ DockGraphBuilder::DockGraphBuilder(const Parameters& parameters)
       contours_(frsm::ContourParams::urg()),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
 
-std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chains, std::uint64_t query,
+std::optional<Closure> DockGraphBuilder::find(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
                                               ClosureCounts& counts) const {
   ++counts.tried;
-  const DockPlace dock = nearest_dock(map, chains, query);
+  const DockPlace dock = nearest_dock(map, segments, query);
   Rejection rejection = Rejection::kNone;
   std::optional<Closure> closure;
   if (dock.node == query) {
@@ -103,12 +103,12 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
   } else {
     const auto least = static_cast<std::size_t>(parameters_.dock_match_least_size);
     const auto most = static_cast<std::size_t>(parameters_.dock_match_submap_size);
-    std::size_t size = walk_chain(map, chains, query, Direction::kBackward, most).size();
-    closure = match(map, chains, query, dock, size, rejection);
+    std::size_t size = walk_trajectory(map, segments, query, Direction::kBackward, most).size();
+    closure = match(map, segments, query, dock, size, rejection);
     for (size /= 2; !closure && size >= least; size /= 2) {
       Rejection later = Rejection::kNone;  // what the documented number of nodes says is what counts
-      closure = match(map, chains, query, dock, size, later);
-      if (closure && closure->hit_fraction == 0.0) closure.reset();  // but more nodes did see something
+      closure = match(map, segments, query, dock, size, later);
+      if (closure && closure->inlier_ratio == 0.0) closure.reset();  // but more nodes did see something
     }
   }
   if (closure) {
@@ -119,13 +119,13 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const Chains& chai
   return closure;
 }
 
-std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& chains, std::uint64_t query,
+std::optional<Closure> DockGraphBuilder::match(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
                                                const DockPlace& dock, std::size_t query_size,
                                                Rejection& rejection) const {
-  const std::vector<PlacedNode> query_nodes = walk_chain(map, chains, query, Direction::kBackward, query_size);
+  const std::vector<PlacedNode> query_nodes = walk_trajectory(map, segments, query, Direction::kBackward, query_size);
   const std::uint64_t way_back = first_of_the_way_back(parameters_, dock.node, query, query_size);
-  const std::vector<PlacedNode> reference =
-      reference_nodes(map, chains, dock.node, static_cast<std::size_t>(parameters_.dock_submap_size), way_back, query);
+  const std::vector<PlacedNode> reference = reference_nodes(
+      map, segments, dock.node, static_cast<std::size_t>(parameters_.dock_submap_size), way_back, query);
   if (reference.empty()) {
     rejection = Rejection::kNoReference;
     return std::nullopt;
@@ -147,7 +147,7 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
   }
   if (match.hits == 0) {
     rejection = Rejection::kNoHits;
-  } else if (match.hit_fraction < needed_hits(parameters_, query_size)) {
+  } else if (match.inlier_ratio < needed_inlier_ratio(parameters_, query_size)) {
     rejection = Rejection::kHits;
   } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
     rejection = Rejection::kDistance;
@@ -159,7 +159,7 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const Chains& cha
                         .cwiseAbs2()
                         .asDiagonal();
     }
-    return Closure{dock.node, query, T_dock_query, covariance, match.hit_fraction, parameters_.closure_firmness};
+    return Closure{dock.node, query, T_dock_query, covariance, match.inlier_ratio, parameters_.closure_firmness};
   }
   return std::nullopt;
 }

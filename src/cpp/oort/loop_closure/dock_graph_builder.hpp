@@ -6,8 +6,8 @@
 
 #include "oort/loop_closure/closure.hpp"
 #include "oort/loop_closure/statistics.hpp"
-#include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/map/trajectory_segments.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -20,7 +20,7 @@ struct DockPlace {
 
 /// The dock nearest to a node: of the locations in the namespace "dock", or, without any, the first node of the node's
 /// segment.
-DockPlace nearest_dock(const Map& map, const Chains& chains, std::uint64_t query);
+DockPlace nearest_dock(const Map& map, const TrajectorySegments& segments, std::uint64_t query);
 
 /// Says again of a loaded map's dock closures how firm they are. Of all closures they alone lead from the older node to
 /// the newer one, as in maps of the original format, and only what was matched is firm.
@@ -35,11 +35,12 @@ class DockGraphBuilder {
   /// The closure from the dock's node to `query`, a node recorded on the dock: the latest nodes matched together, or,
   /// if that is rejected, fewer and fewer of them. Where too little is seen to match, it is the dock's own place with
   /// the reach of its contacts as two deviations. Counts the attempt.
-  std::optional<Closure> find(const Map& map, const Chains& chains, std::uint64_t query, ClosureCounts& counts) const;
+  std::optional<Closure> find(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
+                              ClosureCounts& counts) const;
 
  private:
-  std::optional<Closure> match(const Map& map, const Chains& chains, std::uint64_t query, const DockPlace& dock,
-                               std::size_t query_size, Rejection& rejection) const;
+  std::optional<Closure> match(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
+                               const DockPlace& dock, std::size_t query_size, Rejection& rejection) const;
 
   DockGraphBuilderParameters parameters_;
   frsm::TableParams table_;

@@ -19,10 +19,11 @@ frsm::Points thinned(const frsm::Points& points, std::size_t count) {
   return some;
 }
 
-frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const LoopScale& scale, double min_hits) {
+frsm::MatcherParams loop_matcher_params(const FrsmMatcherParameters& p, const LoopScale& scale,
+                                        double min_inlier_ratio) {
   frsm::MatcherParams params = matcher_params(p);
   params.ambiguity_floor = scale.max_ambiguity;
-  params.min_score = LoopClosureTuning::kScorePerInlier * min_hits;
+  params.min_score = LoopClosureTuning::kScorePerInlier * min_inlier_ratio;
   return params;
 }
 
@@ -43,28 +44,29 @@ FrsmLoopMatcher::FrsmLoopMatcher(const Parameters& parameters, const LoopScale& 
       matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale,
                                    parameters_.fine_match_hitpct_threshold)) {}
 
-bool FrsmLoopMatcher::is_small(const Chains& chains, std::uint64_t candidate) const {
-  return chains.neighborhood(candidate, scale_.submap_nodes).size() <=
+bool FrsmLoopMatcher::is_small(const TrajectorySegments& segments, std::uint64_t candidate) const {
+  return segments.neighborhood(candidate, scale_.submap_nodes).size() <=
          static_cast<std::size_t>(parameters_.submap_min_neighborhood_size);
 }
 
-bool FrsmLoopMatcher::draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter) {
+bool FrsmLoopMatcher::draw(const Map& map, const TrajectorySegments& segments, std::uint64_t candidate,
+                           WorkMeter* meter) {
   charge(meter, LoopClosureTuning::kFrsmWorkPerDrawn *
                     static_cast<double>(LoopClosureTuning::kScansPerPiece * map.clouds[candidate].points.size()));
-  return !is_small(chains, candidate) && submaps_.draw(map, chains, candidate, LoopClosureTuning::kScansPerPiece);
+  return !is_small(segments, candidate) && submaps_.draw(map, segments, candidate, LoopClosureTuning::kScansPerPiece);
 }
 
-LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, std::uint64_t query,
+LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
                                          std::uint64_t candidate, const SearchWindow& window, WorkMeter* meter) {
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
-  const auto rejected = [](Rejection rejection, const Pose2& pose, double hits) {
-    return Found{pose, Eigen::Matrix3d::Zero(), hits, rejection};
+  const auto rejected = [](Rejection rejection, const Pose2& pose, double inlier_ratio) {
+    return Found{pose, Eigen::Matrix3d::Zero(), inlier_ratio, rejection};
   };
-  if (is_small(chains, candidate)) return rejected(Rejection::kSmallSubmap, expected, 0.0);
+  if (is_small(segments, candidate)) return rejected(Rejection::kSmallSubmap, expected, 0.0);
   const frsm::Points points =
-      thinned(gather_points(map, chains, query, chains.neighborhood(query, scale_.query_nodes), scale_.reach),
+      thinned(gather_points(map, segments, query, segments.neighborhood(query, scale_.query_nodes), scale_.reach),
               scale_.fine_points);
-  const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, chains, candidate);
+  const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, segments, candidate);
   frsm::OnLookups on_lookups;
   if (meter != nullptr) {
     charge(meter,
@@ -78,17 +80,17 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const Chains& chains, s
                                            {window.xy, window.xy, window.theta}, &prior, on_lookups);
   if (rough.status == frsm::Status::kNoOverlap) return rejected(Rejection::kNoHits, expected, 0.0);
   const Pose2 roughly = from_frsm(rough.pose);
-  if (rough.hit_fraction < parameters_.rough_match_hitpct_threshold) {
-    return rejected(Rejection::kRoughHits, roughly, rough.hit_fraction);
+  if (rough.inlier_ratio < parameters_.rough_match_hitpct_threshold) {
+    return rejected(Rejection::kRoughHits, roughly, rough.inlier_ratio);
   }
-  if (rough.saturated) return rejected(Rejection::kWindowBorder, roughly, rough.hit_fraction);
-  if (rough.ambiguity > scale_.max_ambiguity) return rejected(Rejection::kAmbiguous, roughly, rough.hit_fraction);
+  if (rough.saturated) return rejected(Rejection::kWindowBorder, roughly, rough.inlier_ratio);
+  if (rough.ambiguity > scale_.max_ambiguity) return rejected(Rejection::kAmbiguous, roughly, rough.inlier_ratio);
   const double fine_xy = LoopClosureTuning::kFineCells * table_.cell;
   const frsm::Match fine = matcher_.match(
       *submap, points, rough.pose,
       {fine_xy, fine_xy, LoopClosureTuning::kFineThetaSteps * matcher_.params().theta_step}, &prior, on_lookups);
-  return {from_frsm(fine.pose), fine.covariance + scale_.bend(), fine.hit_fraction,
-          fine.hit_fraction < parameters_.fine_match_hitpct_threshold ? Rejection::kFineHits : Rejection::kNone};
+  return {from_frsm(fine.pose), fine.covariance + scale_.bend(), fine.inlier_ratio,
+          fine.inlier_ratio < parameters_.fine_match_hitpct_threshold ? Rejection::kFineHits : Rejection::kNone};
 }
 
 }  // namespace oort

@@ -13,12 +13,13 @@ class FrsmLoopMatcher : public LoopMatcher {
  public:
   FrsmLoopMatcher(const Parameters& parameters, const LoopScale& scale);
 
-  Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
+  Found find(const Map& map, const TrajectorySegments& segments, std::uint64_t query, std::uint64_t candidate,
              const SearchWindow& window, WorkMeter* meter = nullptr) override;
-  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter = nullptr) override;
+  bool draw(const Map& map, const TrajectorySegments& segments, std::uint64_t candidate,
+            WorkMeter* meter = nullptr) override;
 
  private:
-  bool is_small(const Chains& chains, std::uint64_t candidate) const;
+  bool is_small(const TrajectorySegments& segments, std::uint64_t candidate) const;
 
   FrsmLoopMatcherParameters parameters_;
   LoopScale scale_;

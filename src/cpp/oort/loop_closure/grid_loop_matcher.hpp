@@ -15,13 +15,14 @@ class GridLoopMatcher : public LoopMatcher {
  public:
   GridLoopMatcher(const Parameters& parameters, const LoopScale& scale);
 
-  Found find(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t candidate,
+  Found find(const Map& map, const TrajectorySegments& segments, std::uint64_t query, std::uint64_t candidate,
              const SearchWindow& window, WorkMeter* meter = nullptr) override;
   /// Draws all of it.
-  bool draw(const Map& map, const Chains& chains, std::uint64_t candidate, WorkMeter* meter = nullptr) override;
+  bool draw(const Map& map, const TrajectorySegments& segments, std::uint64_t candidate,
+            WorkMeter* meter = nullptr) override;
 
  private:
-  bool is_small(const Chains& chains, std::uint64_t candidate) const;
+  bool is_small(const TrajectorySegments& segments, std::uint64_t candidate) const;
 
   BranchAndBoundMatcherParameters parameters_;
   LoopScale scale_;
@@ -30,7 +31,7 @@ class GridLoopMatcher : public LoopMatcher {
 
 /// The scans of some nodes of one segment as a probability grid, in the frame of `origin`, a node of that segment.
 /// Returns farther than `reach` [m] from where they were seen are left out.
-ProbabilityGrid draw_grid(const Map& map, const Chains& chains, std::uint64_t origin,
+ProbabilityGrid draw_grid(const Map& map, const TrajectorySegments& segments, std::uint64_t origin,
                           const std::vector<std::uint64_t>& nodes, const ProbabilityGridParameters& parameters,
                           double reach);
 

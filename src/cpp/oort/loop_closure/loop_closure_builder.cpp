@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "oort/loop_closure/facing.hpp"
+#include "oort/loop_closure/normal_consistency.hpp"
 #include "oort/loop_closure/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
@@ -46,9 +46,10 @@ bool is_wide(const SearchWindow& window) {
   return window.xy > LoopClosureTuning::kWideWindow;
 }
 
-/// Whether the node is among the first of a chain that has others before it: where the chain belongs is not known yet.
-bool is_seeking(const Chains& chains, std::uint64_t query) {
-  const std::uint64_t begin = chains.segment_begin(query);
+/// Whether the node is among the first of a segment that has others before it: where the segment belongs is not known
+/// yet.
+bool is_seeking(const TrajectorySegments& segments, std::uint64_t query) {
+  const std::uint64_t begin = segments.segment_begin(query);
   return begin > 0 && query - begin < kWideScale.query_nodes;
 }
 
@@ -62,10 +63,10 @@ std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) {
   return a > b ? a - b : b - a;
 }
 
-/// Whether two nodes follow so closely on one another that the chain links them better than a closure could. Nodes of
-/// other segments never do: nothing tracked the sensor from one to the other.
-bool is_recent(const Chains& chains, std::uint64_t node, std::uint64_t query, int id_threshold) {
-  return chains.same_segment(node, query) && id_distance(node, query) < static_cast<std::uint64_t>(id_threshold);
+/// Whether two nodes follow so closely on one another that the trajectory links them better than a closure could. Nodes
+/// of other segments never do: nothing tracked the sensor from one to the other.
+bool is_recent(const TrajectorySegments& segments, std::uint64_t node, std::uint64_t query, int id_threshold) {
+  return segments.same_segment(node, query) && id_distance(node, query) < static_cast<std::uint64_t>(id_threshold);
 }
 
 /// What a closure would move: from where the graph expects node `to` to where the match puts it.
@@ -75,18 +76,18 @@ struct Difference {
 };
 
 /// The rules of the match_filter (docs/parameters.md tells each threshold).
-Rejection gate(const MatchFilterParameters& filter, double hits, const Difference& difference, bool is_close,
+Rejection gate(const MatchFilterParameters& filter, double inlier_ratio, const Difference& difference, bool is_close,
                bool is_opposite) {
   if (is_close) {
     if (difference.distance >= filter.close_node_max_dist) return Rejection::kCloseDistance;
     if (difference.angle >= filter.match_max_ang_diff) return Rejection::kAngle;
-    return hits >= filter.close_node_hitpct_threshold ? Rejection::kNone : Rejection::kCloseHits;
+    return inlier_ratio >= filter.close_node_hitpct_threshold ? Rejection::kNone : Rejection::kCloseHits;
   }
   const double needed = is_opposite ? filter.match_hitpct_threshold_opposite_dir : filter.match_hitpct_threshold;
   const double needed_far =
       is_opposite ? filter.match_hitpct_threshold_high_opposite_dir : filter.match_hitpct_threshold_high;
-  if (difference.distance < filter.match_max_dist && hits > needed) return Rejection::kNone;
-  if (difference.distance < filter.match_max_dist_high && hits > needed_far) return Rejection::kNone;
+  if (difference.distance < filter.match_max_dist && inlier_ratio > needed) return Rejection::kNone;
+  if (difference.distance < filter.match_max_dist_high && inlier_ratio > needed_far) return Rejection::kNone;
   return difference.distance < filter.match_max_dist_high ? Rejection::kHits : Rejection::kDistance;
 }
 
@@ -96,10 +97,10 @@ LoopClosureBuilder::LoopClosureBuilder(const Parameters& parameters)
     : parameters_(parameters.loop_closure_graph_builder),
       search_(loop_search(parameters_)),
       scan_matcher_(make_loop_matcher(parameters, scan_scale(parameters_, search_))),
-      way_matcher_(make_loop_matcher(parameters, kWideScale)) {}
+      wide_matcher_(make_loop_matcher(parameters, kWideScale)) {}
 
-void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end,
-                                     WorkMeter* meter) {
+void LoopClosureBuilder::look_before(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
+                                     std::uint64_t end, WorkMeter* meter) {
   charge(meter, LoopClosureTuning::kWorkPerNode * static_cast<double>(map.graph.nodes.size()) +
                     LoopClosureTuning::kWorkPerEdge *
                         static_cast<double>(map.graph.edges.size() + map.graph.switchable_edges.size()));
@@ -107,38 +108,39 @@ void LoopClosureBuilder::look_before(const Map& map, const Chains& chains, std::
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
   }
-  for (const std::uint64_t candidate : candidates(map, chains, query, end)) {
+  for (const std::uint64_t candidate : candidates(map, segments, query, end)) {
     const SearchWindow window = this->window(map, query, candidate);
     const bool wide = search_.is_adaptive() && is_wide(window);
-    if (wide && is_seeking(chains, query)) waiting_.push_back({query, candidate, narrowed(window)});
+    if (wide && is_seeking(segments, query)) waiting_.push_back({query, candidate, narrowed(window)});
     if (wide && query % LoopClosureTuning::kWideStride != 0) continue;
     waiting_.push_back({query, candidate, window});
   }
 }
 
-std::vector<Closure> LoopClosureBuilder::work(const Map& map, const Chains& chains, ClosureCounts& counts,
+std::vector<Closure> LoopClosureBuilder::work(const Map& map, const TrajectorySegments& segments, ClosureCounts& counts,
                                               ClosureLog& log, WorkMeter* meter) {
   if (waiting_.empty()) return {};
   const Attempt attempt = waiting_.front();
-  if (matcher_for(attempt).draw(map, chains, attempt.candidate, meter)) return {};
+  if (matcher_for(attempt).draw(map, segments, attempt.candidate, meter)) return {};
   waiting_.pop_front();
-  return make(attempt, map, chains, counts, log, meter);
+  return make(attempt, map, segments, counts, log, meter);
 }
 
-std::vector<Closure> LoopClosureBuilder::work_off(const Map& map, const Chains& chains, ClosureCounts& counts,
-                                                  ClosureLog& log) {
+std::vector<Closure> LoopClosureBuilder::work_off(const Map& map, const TrajectorySegments& segments,
+                                                  ClosureCounts& counts, ClosureLog& log) {
   std::vector<Closure> closures;
   while (!waiting_.empty()) {
-    for (const Closure& closure : work(map, chains, counts, log)) closures.push_back(closure);
+    for (const Closure& closure : work(map, segments, counts, log)) closures.push_back(closure);
   }
   return closures;
 }
 
-std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map& map, const Chains& chains,
-                                              ClosureCounts& counts, ClosureLog& log, WorkMeter* meter) {
-  LoopMatcher::Found found = match(map, chains, attempt, meter);
+std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map& map,
+                                              const TrajectorySegments& segments, ClosureCounts& counts,
+                                              ClosureLog& log, WorkMeter* meter) {
+  LoopMatcher::Found found = match(map, segments, attempt, meter);
   const Closure closure{attempt.query, attempt.candidate, inverse(found.T_candidate_query),
-                        inverse_covariance(found.T_candidate_query, found.covariance), found.hit_fraction};
+                        inverse_covariance(found.T_candidate_query, found.covariance), found.inlier_ratio};
   std::vector<Closure> believed;
   if (found.rejection == Rejection::kNone) {
     if (must_be_confirmed(map, closure)) {
@@ -150,7 +152,7 @@ std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map&
   }
   ++counts.tried;
   if (found.rejection != Rejection::kNone) ++counts.rejected[found.rejection];
-  log.add({attempt.query, attempt.candidate, found.rejection, found.T_candidate_query, found.hit_fraction});
+  log.add({attempt.query, attempt.candidate, found.rejection, found.T_candidate_query, found.inlier_ratio});
   // Found where it was expected: no need to look farther off.
   const auto is_same = [&](const Attempt& other) {
     return other.query == attempt.query && other.candidate == attempt.candidate;
@@ -165,15 +167,15 @@ std::vector<Closure> LoopClosureBuilder::make(const Attempt& attempt, const Map&
   return believed;
 }
 
-std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const Chains& chains, std::uint64_t query,
-                                                          std::uint64_t end) const {
+std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const TrajectorySegments& segments,
+                                                          std::uint64_t query, std::uint64_t end) const {
   const CandidateSearchParameters& search = parameters_.candidate_search;
   const Eigen::Vector2d center = map.graph.nodes[query].pose.translation();
   std::vector<std::pair<double, std::uint64_t>> by_distance;
   for (const Node& node : map.graph.nodes) {
     if (node.id >= end) break;
     const bool has_submap =
-        (node.id - chains.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
+        (node.id - segments.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
     const double distance = (node.pose.translation() - center).norm();
     double reach = search.max_candidate_distance;
     if (node.id < from_query_.size() && from_query_[node.id]) {
@@ -181,29 +183,29 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
     }
     const bool in_reach = search.max_candidate_distance == 0.0 || distance <= reach;
     if (in_reach && has_submap && node.id != query &&
-        !is_recent(chains, node.id, query, search.closest_allowed_id_threshold_small)) {
+        !is_recent(segments, node.id, query, search.closest_allowed_id_threshold_small)) {
       by_distance.emplace_back(distance, node.id);
     }
   }
   std::sort(by_distance.begin(), by_distance.end());
-  std::vector<std::uint64_t> chosen = nearest(by_distance, chains, query, search.closest_allowed_id_threshold_large);
+  std::vector<std::uint64_t> chosen = nearest(by_distance, segments, query, search.closest_allowed_id_threshold_large);
   if (!chosen.empty()) return chosen;
-  return nearest(by_distance, chains, query, search.closest_allowed_id_threshold_small);
+  return nearest(by_distance, segments, query, search.closest_allowed_id_threshold_small);
 }
 
 std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pair<double, std::uint64_t>>& by_distance,
-                                                       const Chains& chains, std::uint64_t query,
+                                                       const TrajectorySegments& segments, std::uint64_t query,
                                                        int id_threshold) const {
   const CandidateSearchParameters& search = parameters_.candidate_search;
   const auto hops = std::max<std::uint64_t>((static_cast<std::uint64_t>(search.submap_neighborhood_size) + 1) / 2, 1);
   std::vector<std::uint64_t> chosen;
   const auto covered = [&](std::uint64_t node, std::uint64_t by) {
-    return chains.same_segment(node, by) && id_distance(node, by) <= hops;
+    return segments.same_segment(node, by) && id_distance(node, by) <= hops;
   };
   for (const auto& entry : by_distance) {
     const std::uint64_t node = entry.second;
     if (chosen.size() == static_cast<std::size_t>(search.knearest_neighbors)) break;
-    if (is_recent(chains, node, query, id_threshold) || covered(node, query)) continue;
+    if (is_recent(segments, node, query, id_threshold) || covered(node, query)) continue;
     if (std::none_of(chosen.begin(), chosen.end(), [&](std::uint64_t other) { return covered(node, other); })) {
       chosen.push_back(node);
     }
@@ -234,26 +236,26 @@ SearchWindow LoopClosureBuilder::window(const Map& map, std::uint64_t query, std
 }
 
 LoopMatcher& LoopClosureBuilder::matcher_for(const Attempt& attempt) {
-  return *(is_wide(attempt.window) && search_.is_adaptive() ? way_matcher_ : scan_matcher_);
+  return *(is_wide(attempt.window) && search_.is_adaptive() ? wide_matcher_ : scan_matcher_);
 }
 
-LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const Chains& chains, const Attempt& attempt,
+LoopMatcher::Found LoopClosureBuilder::match(const Map& map, const TrajectorySegments& segments, const Attempt& attempt,
                                              WorkMeter* meter) {
   const auto [query, candidate, window] = attempt;
-  LoopMatcher::Found found = matcher_for(attempt).find(map, chains, query, candidate, window, meter);
+  LoopMatcher::Found found = matcher_for(attempt).find(map, segments, query, candidate, window, meter);
   if (found.rejection != Rejection::kNone) return found;
   const Pose2 expected = between(map.graph.nodes[candidate].pose, map.graph.nodes[query].pose);
   const Pose2 moved = between(expected, found.T_candidate_query);
   found.rejection =
-      gate(search_.match_filter, found.hit_fraction, {moved.translation().norm(), std::abs(moved.theta)},
-           is_recent(chains, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
+      gate(search_.match_filter, found.inlier_ratio, {moved.translation().norm(), std::abs(moved.theta)},
+           is_recent(segments, candidate, query, parameters_.candidate_search.closest_allowed_id_threshold_large),
            std::abs(expected.theta) >= search_.match_filter.opposite_dir_threshold);
   if (found.rejection != Rejection::kNone) return found;
   charge(meter, LoopClosureTuning::kWorkPerNormal * static_cast<double>(map.clouds[query].points.size()) *
                     (parameters_.candidate_search.submap_neighborhood_size + 1));
-  const FacingMap facing(map, chains, candidate,
-                         chains.neighborhood(candidate, static_cast<std::uint64_t>(
-                                                            parameters_.candidate_search.submap_neighborhood_size)));
+  const NormalMap facing(map, segments, candidate,
+                         segments.neighborhood(candidate, static_cast<std::uint64_t>(
+                                                              parameters_.candidate_search.submap_neighborhood_size)));
   if (facing.agreement(surface_points(returns_of(map.clouds[query])), found.T_candidate_query) <
       search_.min_facing_share) {
     found.rejection = Rejection::kOtherSide;

@@ -17,8 +17,8 @@
 #include "oort/loop_closure/closure_log.hpp"
 #include "oort/loop_closure/loop_matcher.hpp"
 #include "oort/loop_closure/statistics.hpp"
-#include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/map/trajectory_segments.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -44,48 +44,50 @@ class LoopClosureBuilder {
   explicit LoopClosureBuilder(const Parameters& parameters);
 
   /// Notes what is worth an attempt now that the newest node, `query`, is there.
-  void look(const Map& map, const Chains& chains, std::uint64_t query, WorkMeter* meter = nullptr) {
-    look_before(map, chains, query, map.graph.nodes.size(), meter);
+  void look(const Map& map, const TrajectorySegments& segments, std::uint64_t query, WorkMeter* meter = nullptr) {
+    look_before(map, segments, query, map.graph.nodes.size(), meter);
   }
 
   /// The same of any node, with candidates among the nodes before `end` only.
-  void look_before(const Map& map, const Chains& chains, std::uint64_t query, std::uint64_t end,
+  void look_before(const Map& map, const TrajectorySegments& segments, std::uint64_t query, std::uint64_t end,
                    WorkMeter* meter = nullptr);
 
   bool has_work() const { return !waiting_.empty(); }
 
   /// Does the next piece of what was noted: draws some scans of a submap, or makes one attempt. Returns the closures
   /// that are believed with it.
-  std::vector<Closure> work(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log,
+  std::vector<Closure> work(const Map& map, const TrajectorySegments& segments, ClosureCounts& counts, ClosureLog& log,
                             WorkMeter* meter = nullptr);
 
   /// Does all of what was noted.
-  std::vector<Closure> work_off(const Map& map, const Chains& chains, ClosureCounts& counts, ClosureLog& log);
+  std::vector<Closure> work_off(const Map& map, const TrajectorySegments& segments, ClosureCounts& counts,
+                                ClosureLog& log);
 
   /// Nodes worth matching against, nearest first: at most knearest_neighbors, none within the neighbourhood of another
   /// or of the query, all before `end`. look() sets how uncertain each is.
-  std::vector<std::uint64_t> candidates(const Map& map, const Chains& chains, std::uint64_t query,
+  std::vector<std::uint64_t> candidates(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
                                         std::uint64_t end = std::numeric_limits<std::uint64_t>::max()) const;
 
  private:
   std::vector<std::uint64_t> nearest(const std::vector<std::pair<double, std::uint64_t>>& by_distance,
-                                     const Chains& chains, std::uint64_t query, int id_threshold) const;
+                                     const TrajectorySegments& segments, std::uint64_t query, int id_threshold) const;
   struct Attempt {
     std::uint64_t query;
     std::uint64_t candidate;
     SearchWindow window;
   };
   LoopMatcher& matcher_for(const Attempt& attempt);
-  std::vector<Closure> make(const Attempt& attempt, const Map& map, const Chains& chains, ClosureCounts& counts,
-                            ClosureLog& log, WorkMeter* meter);
-  LoopMatcher::Found match(const Map& map, const Chains& chains, const Attempt& attempt, WorkMeter* meter);
+  std::vector<Closure> make(const Attempt& attempt, const Map& map, const TrajectorySegments& segments,
+                            ClosureCounts& counts, ClosureLog& log, WorkMeter* meter);
+  LoopMatcher::Found match(const Map& map, const TrajectorySegments& segments, const Attempt& attempt,
+                           WorkMeter* meter);
   SearchWindow window(const Map& map, std::uint64_t query, std::uint64_t candidate) const;
   bool must_be_confirmed(const Map& map, const Closure& closure) const;
 
   LoopClosureGraphBuilderParameters parameters_;
   LoopSearch search_;
   std::unique_ptr<LoopMatcher> scan_matcher_;
-  std::unique_ptr<LoopMatcher> way_matcher_;
+  std::unique_ptr<LoopMatcher> wide_matcher_;
   RelativeUncertainty uncertainty_;
   std::vector<std::optional<Eigen::Matrix3d>> from_query_;  // covariance of T_query_node by node, along the map's axes
   ClosureConfirmation confirmation_;

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/map/trajectory_segments.hpp"
 
 namespace oort {
 
@@ -23,27 +23,27 @@ class SubmapCache {
  public:
   /// Draws the scans of some nodes of a neighbourhood, in the frame of its node. The first `drawn` of them are in
   /// `so_far` already, null if none are: the others may be added to it, or all be drawn anew.
-  using Draw = std::function<std::shared_ptr<Submap>(const Map&, const Chains&, std::uint64_t node,
+  using Draw = std::function<std::shared_ptr<Submap>(const Map&, const TrajectorySegments&, std::uint64_t node,
                                                      const std::vector<std::uint64_t>& nodes, std::size_t drawn,
                                                      const std::shared_ptr<Submap>& so_far)>;
 
   SubmapCache(std::uint64_t neighborhood_size, std::size_t max_bytes, Draw draw)
       : neighborhood_size_(neighborhood_size), max_bytes_(max_bytes), draw_(std::move(draw)) {}
 
-  std::shared_ptr<const Submap> get(const Map& map, const Chains& chains, std::uint64_t node) {
-    const std::vector<std::uint64_t> nodes = chains.neighborhood(node, neighborhood_size_);
-    draw_more(map, chains, nodes, latest(node));
+  std::shared_ptr<const Submap> get(const Map& map, const TrajectorySegments& segments, std::uint64_t node) {
+    const std::vector<std::uint64_t> nodes = segments.neighborhood(node, neighborhood_size_);
+    draw_more(map, segments, nodes, latest(node));
     forget_oldest();
     return entries_.front().submap;
   }
 
   /// Draws at most so many more scans of a node's submap. False if it was drawn already.
-  bool draw(const Map& map, const Chains& chains, std::uint64_t node, std::size_t scans) {
-    std::vector<std::uint64_t> nodes = chains.neighborhood(node, neighborhood_size_);
+  bool draw(const Map& map, const TrajectorySegments& segments, std::uint64_t node, std::size_t scans) {
+    std::vector<std::uint64_t> nodes = segments.neighborhood(node, neighborhood_size_);
     Entry& entry = latest(node);
     if (entry.drawn == nodes.size()) return false;
     if (nodes.size() - entry.drawn > scans) nodes.resize(entry.drawn + scans);
-    draw_more(map, chains, nodes, entry);
+    draw_more(map, segments, nodes, entry);
     return true;
   }
 
@@ -65,9 +65,10 @@ class SubmapCache {
     return entries_.front();
   }
 
-  void draw_more(const Map& map, const Chains& chains, const std::vector<std::uint64_t>& nodes, Entry& entry) const {
+  void draw_more(const Map& map, const TrajectorySegments& segments, const std::vector<std::uint64_t>& nodes,
+                 Entry& entry) const {
     if (entry.drawn == nodes.size()) return;
-    entry.submap = draw_(map, chains, entry.node, nodes, entry.drawn, entry.submap);
+    entry.submap = draw_(map, segments, entry.node, nodes, entry.drawn, entry.submap);
     entry.drawn = nodes.size();
   }
 

@@ -26,7 +26,7 @@ std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const std::vector
   return drawn;
 }
 
-frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t origin,
+frsm::Points gather_points(const Map& map, const TrajectorySegments& segments, std::uint64_t origin,
                            const std::vector<std::uint64_t>& nodes, double reach) {
   frsm::Points points;
   for (const std::uint64_t node : nodes) {
@@ -34,7 +34,7 @@ frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t o
     seen.erase(std::remove_if(seen.begin(), seen.end(),
                               [reach](const frsm::Point& p) { return std::hypot(p.x, p.y) > reach; }),
                seen.end());
-    append_transformed(seen, between(chains.local_pose(origin), chains.local_pose(node)), points);
+    append_transformed(seen, between(segments.local_pose(origin), segments.local_pose(node)), points);
   }
   return points;
 }
@@ -42,12 +42,12 @@ frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t o
 SubmapCache<frsm::Table> table_cache(std::uint64_t neighborhood_size, std::size_t max_bytes,
                                      const frsm::TableParams& table, const frsm::ContourParams& contours) {
   return {neighborhood_size, max_bytes,
-          [table, contours](const Map& map, const Chains& chains, std::uint64_t node,
+          [table, contours](const Map& map, const TrajectorySegments& segments, std::uint64_t node,
                             const std::vector<std::uint64_t>& nodes, std::size_t drawn,
                             const std::shared_ptr<frsm::Table>& so_far) {
             auto drawing = drawn > 0 ? so_far : std::make_shared<frsm::Table>(table);
             for (std::size_t k = drawn; k < nodes.size(); ++k) {
-              const Pose2 T_origin_node = between(chains.local_pose(node), chains.local_pose(nodes[k]));
+              const Pose2 T_origin_node = between(segments.local_pose(node), segments.local_pose(nodes[k]));
               draw_scan(map, {nodes[k], T_origin_node}, contours, *drawing);
             }
             return drawing;

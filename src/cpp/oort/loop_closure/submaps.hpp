@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "oort/loop_closure/submap_cache.hpp"
-#include "oort/map/chain_walk.hpp"
-#include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/map/trajectory_segments.hpp"
+#include "oort/map/trajectory_walk.hpp"
 
 namespace oort {
 
@@ -22,7 +22,7 @@ std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const std::vector
 
 /// The returns of some nodes of one segment, in the frame of `origin`, a node of that segment; those farther than
 /// `reach` [m] from where they were seen are left out.
-frsm::Points gather_points(const Map& map, const Chains& chains, std::uint64_t origin,
+frsm::Points gather_points(const Map& map, const TrajectorySegments& segments, std::uint64_t origin,
                            const std::vector<std::uint64_t>& nodes,
                            double reach = std::numeric_limits<double>::infinity());
 

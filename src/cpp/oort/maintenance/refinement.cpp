@@ -35,7 +35,7 @@ Link link_of(const AnyEdge& edge, double weight) {
   return link;
 }
 
-/// The chain's links, and the closures that are on.
+/// The trajectory's edges, and the closures that are on.
 std::vector<Link> known_links(const Graph& graph) {
   std::vector<Link> links;
   for (const Edge& edge : graph.edges) links.push_back(link_of(edge, 1.0));

@@ -11,14 +11,14 @@
 
 namespace oort {
 
-/// How a node was linked to the one before it on its chain (the map file's IncrGraphResult).
+/// How a node was linked to the one before it on its trajectory (the map file's IncrGraphResult).
 struct IncrementalResult {
   std::uint64_t id = 0;                                  ///< the node
-  std::uint64_t target = 0;                              ///< the node before it; itself for the first of a chain
+  std::uint64_t target = 0;                              ///< the node before it; itself for the first of a segment
   Pose2 T_local_id;                                      ///< the node's pose in the scan matcher's own frame ("smTid")
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_local_id
   Pose2 T_target_id;
-  double hit_fraction = 0.0;  ///< hits / returns of the node's cloud, in [0, 1]
+  double inlier_ratio = 0.0;  ///< share of the returns of the node's cloud, in [0, 1]
 };
 
 /// How a loop was closed (the map file's LoopGraphResult).
@@ -27,7 +27,7 @@ struct LoopResult {
   std::uint64_t target = 0;
   Pose2 T_id_target;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of T_id_target, along the axes of node id
-  double hit_fraction = 0.0;
+  double inlier_ratio = 0.0;
 };
 
 /// A named place, kept relative to a node so that it moves with the map.

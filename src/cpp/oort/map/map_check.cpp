@@ -88,7 +88,7 @@ Defect check_result(const Result& result, const std::string& name, std::size_t n
       return name + " refers to node " + number(id) + ", but there are " + number(node_count) + " nodes";
     }
   }
-  if (!std::isfinite(result.hit_fraction)) return "the hit fraction of " + name + " is not finite";
+  if (!std::isfinite(result.inlier_ratio)) return "the inlier ratio of " + name + " is not finite";
   return check_covariance(result.covariance, name);
 }
 

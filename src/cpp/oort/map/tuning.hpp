@@ -10,7 +10,7 @@ struct MapTuning {
   /// inflate to metres, while an edge by odometry stays below a decimetre or two.
   static constexpr double kMaxRigidDeviation = 0.5;
 
-  /// [m] The same of scans that are matched together as one query (walk_segment), which asks for more.
+  /// [m] The same of scans that are matched together as one query (walk_trajectory), which asks for more.
   static constexpr double kMaxWalkDeviation = 0.2;
 
   /// [m] Poses farther from the origin come from a broken input.

@@ -47,24 +47,24 @@ Correction GlobalSlam::work(WorkMeter& meter) {
   }
   if (!not_looked_from_.empty()) {
     const WorkClock clock(work_seconds_.candidates);
-    loops_.look(map(), map_.chains(), not_looked_from_.front(), &meter);
+    loops_.look(map(), map_.segments(), not_looked_from_.front(), &meter);
     not_looked_from_.pop_front();
     return {{}, std::nullopt, counts_};
   }
   const WorkClock clock(work_seconds_.matching);
-  return found(loops_.work(map(), map_.chains(), counts_.loops, closure_log_, &meter));
+  return found(loops_.work(map(), map_.segments(), counts_.loops, closure_log_, &meter));
 }
 
 Correction GlobalSlam::finish() {
   Correction all;
   while (!not_looked_from_.empty() || loops_.has_work()) {
     if (!not_looked_from_.empty()) {
-      loops_.look(map(), map_.chains(), not_looked_from_.front(), nullptr);
+      loops_.look(map(), map_.segments(), not_looked_from_.front(), nullptr);
       not_looked_from_.pop_front();
       continue;
     }
     const WorkClock clock(work_seconds_.matching);
-    const Correction some = found(loops_.work_off(map(), map_.chains(), counts_.loops, closure_log_));
+    const Correction some = found(loops_.work_off(map(), map_.segments(), counts_.loops, closure_log_));
     all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
   }
   if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(MapperTuning::kFinalIterations);
@@ -79,7 +79,7 @@ Correction GlobalSlam::link_dock(const std::vector<Location>& locations) {
   std::optional<Closure> closure;
   {
     const WorkClock clock(work_seconds_.matching);
-    closure = docks_.find(map(), map_.chains(), map_.node_count() - 1, counts_.docks);
+    closure = docks_.find(map(), map_.segments(), map_.node_count() - 1, counts_.docks);
   }
   if (!closure) return {{}, std::nullopt, counts_};
   found({*closure});

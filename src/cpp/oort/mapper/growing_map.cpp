@@ -8,7 +8,7 @@ namespace oort {
 
 void GrowingMap::set_map(Map map) {
   map_ = std::move(map);
-  chains_ = Chains::of_map(map_);
+  segments_ = TrajectorySegments::of_map(map_);
   placements_.clear();
   next_edge_id_ = next_edge_id(map_.graph);
 }
@@ -22,7 +22,7 @@ void GrowingMap::add(const NodeAddition& addition) {
     edge.id = next_edge_id_++;
     map_.graph.edges.push_back(edge);
   }
-  chains_.add(addition.begins_segment, addition.matched, addition.result.T_local_id);
+  segments_.add(addition.begins_segment, addition.matched, addition.result.T_local_id);
   map_.clouds.push_back(addition.cloud);
   map_.incremental_results.push_back(addition.result);
   placements_.push_back({addition.from, addition.T_from_node});

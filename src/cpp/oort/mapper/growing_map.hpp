@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "oort/loop_closure/closure.hpp"
-#include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
 #include "oort/map/node_addition.hpp"
+#include "oort/map/trajectory_segments.hpp"
 
 namespace oort {
 
@@ -24,7 +24,7 @@ struct Solution {
 class GrowingMap {
  public:
   const Map& map() const { return map_; }
-  const Chains& chains() const { return chains_; }
+  const TrajectorySegments& segments() const { return segments_; }
   std::uint64_t node_count() const { return map_.graph.nodes.size(); }
 
   /// Replaces everything. The map must be one that find_defect() accepts.
@@ -52,7 +52,7 @@ class GrowingMap {
   };
 
   Map map_;
-  Chains chains_;
+  TrajectorySegments segments_;
   std::vector<Placement> placements_;  // of the newest nodes: those that were not loaded
   std::uint64_t next_edge_id_ = 0;
 };

@@ -60,7 +60,7 @@ bool Mapper::notify_docked() {
         "Mapper.notify_docked: no scan has been mapped yet, so there is nothing to link; drive and scan first");
   }
   take_effect(lane_->settle());
-  if (const std::optional<ChainNode> node = local_.make_node()) {
+  if (const std::optional<TrajectoryNode> node = local_.make_node()) {
     add(*node);
     lane_->slam().add(node->addition);
   }
@@ -125,8 +125,8 @@ std::optional<Pose2> Mapper::locate(const std::string& name_space, const std::st
 
 MapperStatistics Mapper::statistics() const {
   const OdometryMonitor& odometry = local_.odometry_monitor();
-  return {local_.counts(), local_.chain_counts(),  tracking_counts_,
-          global_counts_,  odometry.fault_count(), odometry.faults()};
+  return {local_.counts(), local_.trajectory_counts(), tracking_counts_,
+          global_counts_,  odometry.fault_count(),     odometry.faults()};
 }
 
 WorkSeconds Mapper::work_seconds() const {
@@ -157,14 +157,14 @@ bool Mapper::take_effect(const std::vector<Correction>& corrections) {
     global_counts_ = correction.counts;
   }
   if (solved && map_.node_count() > 0) {
-    tracking_.look_for_tie(map().graph, map_.chains().segment_begin(map_.node_count() - 1));
+    tracking_.look_for_tie(map().graph, map_.segments().segment_begin(map_.node_count() - 1));
   }
   return solved || closed;
 }
 
-void Mapper::add(const ChainNode& node) {
-  if (node.attachment != Attachment::kFirm) {
-    tracking_.hang_loosely(map_.node_count(), node.attachment == Attachment::kGuess);
+void Mapper::add(const TrajectoryNode& node) {
+  if (node.attachment != Attachment::kTied) {
+    tracking_.add_untied(map_.node_count(), node.attachment == Attachment::kGuess);
   }
   map_.add(node.addition);
 }
@@ -191,7 +191,7 @@ ScanResult Mapper::result(ScanOutcome outcome) const {
   ScanResult result;
   result.tracking = tracking_state_;
   result.outcome = outcome;
-  result.hit_fraction = scan.tracked.hit_fraction;
+  result.inlier_ratio = scan.tracked.inlier_ratio;
   result.was_tracked = scan.was_tracked;
   result.rejection = scan.tracked.rejection;
   if (!local_.has_pose()) return result;

@@ -29,7 +29,7 @@ struct ScanResult {
   Pose2 T_map_odom;  ///< the same; both the identity without a node
   /// Of T_node_sensor as matched, along the axes of the map; zero where the scan was not matched.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double hit_fraction = 0.0;
+  double inlier_ratio = 0.0;
   bool was_tracked = false;                      ///< whether the scan matcher was asked
   Rejection rejection = Rejection::kNotMatched;  ///< of its match by itself
   TrackingState tracking = TrackingState::kTracking;
@@ -101,7 +101,7 @@ class Mapper {
 
  private:
   bool take_effect(const std::vector<Correction>& corrections);
-  void add(const ChainNode& node);
+  void add(const TrajectoryNode& node);
   void count_tracking(TrackingState state);
   std::uint64_t work_granted(double time);
   ScanResult result(ScanOutcome outcome) const;

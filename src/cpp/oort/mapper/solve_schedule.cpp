@@ -10,9 +10,9 @@
 
 namespace oort {
 
-void SolveSchedule::add_closure(double surprise) {
+void SolveSchedule::add_closure(double innovation) {
   ++pending_;
-  surprised_ = surprised_ || surprise > LoopClosureTuning::kLargeInnovation;
+  large_innovation_ = large_innovation_ || innovation > LoopClosureTuning::kLargeInnovation;
 }
 
 SolveSchedule::Extent SolveSchedule::due(std::uint64_t size, std::uint64_t progress) const {
@@ -20,13 +20,13 @@ SolveSchedule::Extent SolveSchedule::due(std::uint64_t size, std::uint64_t progr
   if (progress >= progress_at_last_ + std::max(MapperTuning::kMinProgress, size / MapperTuning::kGrowthParts)) {
     return Extent::kAll;
   }
-  if (!surprised_) return Extent::kNothing;
+  if (!large_innovation_) return Extent::kNothing;
   return size > large_ ? Extent::kNewest : Extent::kAll;
 }
 
 void SolveSchedule::solved_newest() {
   pending_ = 0;
-  surprised_ = false;
+  large_innovation_ = false;
 }
 
 void SolveSchedule::solved_all(std::uint64_t progress) {

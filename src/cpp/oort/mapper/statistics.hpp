@@ -29,7 +29,7 @@ struct GlobalCounts {
 /// Counts since the mapper was made.
 struct MapperStatistics {
   LocalCounts local;
-  ChainCounts chain;
+  TrajectoryCounts trajectory;
   TrackingCounts tracking;
   GlobalCounts global;
   std::uint64_t odometry_fault_count = 0;

@@ -7,8 +7,8 @@
 
 #include "oort/parameters/parameters.hpp"
 
-/// How the parameters of incremental_graph_builder.frsm_matcher, which the chain, the loops and the dock share, read in
-/// the matcher's own terms.
+/// How the parameters of incremental_graph_builder.frsm_matcher, which local SLAM, the loops and the dock share, read
+/// in the matcher's own terms.
 namespace oort {
 
 frsm::TableParams table_params(const FrsmMatcherParameters& p);

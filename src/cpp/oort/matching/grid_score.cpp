@@ -42,7 +42,7 @@ void score_pose(const ProbabilityGrid& grid, const Points& points, ScanMatch& ma
     if (probability > MatchingTuning::kOccupied) ++hits;
   }
   match.score = sum / static_cast<double>(points.size());
-  match.hit_fraction = static_cast<double>(hits) / static_cast<double>(points.size());
+  match.inlier_ratio = static_cast<double>(hits) / static_cast<double>(points.size());
 }
 
 void SampleCovariance::add(const Eigen::Vector3d& offset, double score) {

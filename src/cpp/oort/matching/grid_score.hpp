@@ -23,7 +23,7 @@ std::vector<CellIndex> cells_of(const Points& points, const Pose2& T_grid_sensor
 double angular_step(const Points& points, double resolution);
 
 /// Mean probability of the cells that points lie in from a pose, and the share of them that are rather occupied than
-/// free. Sets a match's score and hit_fraction.
+/// free. Sets a match's score and inlier_ratio.
 void score_pose(const ProbabilityGrid& grid, const Points& points, ScanMatch& match);
 
 /// Covariance of a pose from the scores of poses around it (Olson 2009, equations 7 and 8), of which each counts

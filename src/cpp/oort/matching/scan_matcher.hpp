@@ -16,7 +16,7 @@ struct ScanMatch {
   Rejection rejection = Rejection::kGridEmptyScan;
   Pose2 pose;                 ///< T_grid_sensor
   double score = 0.0;         ///< mean probability of the cells that the points lie in, unknown ones counting 0.1
-  double hit_fraction = 0.0;  ///< share of the points in cells that are rather occupied than free
+  double inlier_ratio = 0.0;  ///< share of the points in cells that are rather occupied than free
   /// Of the match alone, x, y, theta along the axes of the grid [1/m^2, 1/(m rad), 1/rad^2]; may be singular. Zero
   /// where the pose is the guess.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();

@@ -38,8 +38,8 @@ class PlacementSearch {
         reference_(std::make_shared<ReferenceMap>(target, parameters)),
         relocalizer_(reference_, parameters),
         matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
-        views_(spread_views(query, Chains::of_map(query), MergingTuning::kMaxViews, MergingTuning::kViewSpacing,
-                            MergingTuning::kNodesPerView)) {}
+        views_(spread_views(query, TrajectorySegments::of_map(query), MergingTuning::kMaxViews,
+                            MergingTuning::kViewSpacing, MergingTuning::kNodesPerView)) {}
 
   std::size_t size() const { return views_.size(); }
 

@@ -73,7 +73,7 @@ bool is_believed(const MapPlacement& p, const MapSearch& search) {
   return p.fits >= search.needed && p.fits > p.contradicts;
 }
 
-[[noreturn]] void refuse(const MapSearch& search) {
+[[noreturn]] void reject(const MapSearch& search) {
   const bool given = !search.placements.empty() && search.placements.front().found_by == kGiven;
   const std::string best = search.placements.empty() ? "nothing fits" : evidence(search.placements.front(), search);
   if (given) {
@@ -90,7 +90,7 @@ bool is_believed(const MapPlacement& p, const MapSearch& search) {
 
 /// The best placement. One at the docks counts as much as a better one elsewhere, where both fit about as well.
 MapPlacement chosen(const MapSearch& search) {
-  if (search.placements.empty() || !is_believed(search.placements.front(), search)) refuse(search);
+  if (search.placements.empty() || !is_believed(search.placements.front(), search)) reject(search);
   std::vector<MapPlacement> rivals;
   for (const MapPlacement& placement : search.placements) {
     if (placement.score() > MergingTuning::kAmbiguousShare * search.placements.front().score()) {

@@ -31,7 +31,7 @@ struct Merged {
   std::vector<DroppedLocation> dropped;
 };
 
-/// Joins two maps of the same home: map b's nodes become further chains of map a, in whose frame the result is, and
+/// Joins two maps of the same home: map b's nodes become further segments of map a, in whose frame the result is, and
 /// loop closures from each node of map b tie them to it. Neither map is changed; deterministic.
 ///
 /// `T_a_b` says about where map b's origin lies on map a, within a step and some degrees; without it that is found:

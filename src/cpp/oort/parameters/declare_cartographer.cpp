@@ -66,7 +66,7 @@ void declare_acceptance(const Section& v, CartographerMatcherParameters& p) {
     "Largest difference in heading that is accepted.")
       .documented(0.1, kGates);
   v(p.min_sm_accept_score, "min_sm_accept_score", {0.2, "fraction", {0.0, 1.0}},
-    "Least share of hits that is accepted. Scans with fewer join no local map.")
+    "Least inlier ratio that is accepted. Scans with a lower one join no local map.")
       .documented(0.0, "A scan of another place must not join; 99 % of 3500 scans of Intel have more than 0.46.");
 }
 
@@ -77,7 +77,7 @@ void declare_second_stage(const Section& v, SecondStageMatcherParameters& p) {
   v(p.sm_angle_accept_threshold, "sm_angle_accept_threshold", {0.07, "rad", {0.0, 3.15}},
     "Largest difference in heading that is accepted.");
   v(p.min_sm_accept_score, "min_sm_accept_score", {0.0, "fraction", {0.0, 1.0}},
-    "Least share of hits that is accepted.");
+    "Least inlier ratio that is accepted.");
 }
 
 void declare_lenient_match_filter(const Section& v, MatchFilterParameters& p) {
@@ -143,7 +143,7 @@ void declare_branch_and_bound_matcher(const Section& v, BranchAndBoundMatcherPar
   v(p.debug_only_show_matched, "debug_only_show_matched", true, "Whether the viewer shows accepted matches only.")
       .later();
   v(p.submap_min_neighborhood_size, "submap_min_neighborhood_size", {3, "nodes", {1, 10000}},
-    "Candidates with a smaller submap are refused.");
+    "Candidates with a smaller submap are rejected.");
   v(p.global_localization_min_score, "global_localization_min_score", {0.21, "fraction", {0.0, 1.0}},
     "Least score of a match without a guess, that is of a place that the relocaliser looks at: the mean of the coarse "
     "table under its points.");

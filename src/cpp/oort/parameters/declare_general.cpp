@@ -60,18 +60,19 @@ void declare_dock(const Section& v, DockGraphBuilderParameters& p) {
   v(p.dock_max_translation, "dock_max_translation", {0.25, "m", {0.0, 5.0}},
     "How far the dock may have been moved between two visits.");
   v(p.dock_match_max_dist, "dock_match_max_dist", {0.4, "m", {0.0, 10.0}},
-    "Matches that put the two docked poses farther apart are refused.");
+    "Matches that put the two docked poses farther apart are rejected.");
   v(p.dock_match_min_hit_pct, "dock_match_min_hit_pct", {0.6, "fraction", {0.0, 1.0}},
-    "Matches with a smaller share of hits are refused.");
+    "Matches with a lower inlier ratio are rejected.");
   v(p.search_window_theta, "search_window_theta", {0.35, "rad", {0.01, 3.15}},
     "Half width of the search in heading: how crooked the robot may stand on the dock.")
       .own(0.35);
   v(p.dock_match_least_size, "dock_match_least_size", {1, "nodes", {1, 10000}},
-    "Where the match of the latest nodes is refused, that of half as many is tried, and so on down to this.")
+    "Where the match of the latest nodes is rejected, that of half as many is tried, and so on down to this.")
       .own(7, "A narrow view that turns on the spot before it backs onto the dock bends its last nodes.");
   v(p.closure_firmness, "closure_firmness", {100.0, "", {1.0, 1e6}},
     "How many times as much as for another closure it costs to switch off a matched dock closure.")
-      .own(1.0, "The robot touches its dock: when the chain contradicts that, it is the chain that is wrong.");
+      .own(1.0,
+           "The robot touches its dock: when the trajectory contradicts that, it is the trajectory that is wrong.");
 }
 
 }  // namespace oort

@@ -31,14 +31,14 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
   v(p.max_search_range_theta, "max_search_range_theta", {0.1, "rad", {0.0, 3.15}},
     "Half width in heading to which the search may grow.");
   v(p.add_scan_hit_thresh, "add_scan_hit_thresh", {0.95, "fraction", {0.0, 1.0}},
-    "A scan joins the local map if a smaller share of it hits the map.");
+    "A scan joins the local map if its inlier ratio is lower.");
   v(p.stationary_motion_model, "stationary_motion_model", false,
     "Whether a search without odometry starts at the last pose (else: same velocity).");
   v(p.std_mot_model, "std_mot_model", {0.4, "m^2", {0.0, 1000.0}},
     "Width w of the pull towards the odometry's position: scores are multiplied by exp(-d^2 / w), so w is 2 sigma^2; "
     "up to 0.1 there is no pull.");
   v(p.key_scan_distance, "key_scan_distance", {0.2, "m", {0.0, 100.0}},
-    "A matched scan this far from the last one in the local map joins it too; 0: only by hits.")
+    "A matched scan this far from the last one in the local map joins it too; 0: only by inlier ratio.")
       .own(0.0, "Intel 0.207 degrees instead of 0.217; and a parked robot adds no scans.");
   v(p.key_scan_angle, "key_scan_angle", {0.2, "rad", {0.001, 3.15}},
     "The same for a turn; in force with key_scan_distance.")
@@ -75,8 +75,8 @@ void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
       .own(0.005);
   v(p.least_learned, "least_learned", {0.2, "", {0.01, 1.0}},
     "How far the standard deviations above may shrink, as a factor, when matches that see all directions keep agreeing "
-    "with odometry; they grow (up to 3) when they keep disagreeing. The scales of way and turn are learned too. 1: "
-    "nothing is learned.")
+    "with odometry; they grow (up to 3) when they keep disagreeing. The scales of translation and rotation are learned "
+    "too. 1: nothing is learned.")
       .own(1.0,
            "How good a base is differs much. 25 simulated homes seen with 60 degrees: ATE median 0.079 m instead of "
            "0.23 m, 1 broken map instead of 7; with 90 degrees 0.032 m instead of 0.037 m.");
@@ -97,7 +97,7 @@ void declare_match_filtering(const Section& v, MatchFilteringParameters& p) {
   v(p.theta_abs_accept, "theta_abs_accept", {1.0, "rad", {0.0, 3.15}},
     "Largest difference in heading that is accepted.")
       .documented(0.07, "As x_min_accept.");
-  v(p.min_accept_score, "min_accept_score", {0.45, "fraction", {0.0, 1.0}}, "Least share of hits that is accepted.");
+  v(p.min_accept_score, "min_accept_score", {0.45, "fraction", {0.0, 1.0}}, "Least inlier ratio that is accepted.");
 }
 
 void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {

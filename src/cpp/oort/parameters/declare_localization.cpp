@@ -20,10 +20,10 @@ void declare_relocalizer(const Section& v, RelocalizerParameters& p) {
     "share that went through known walls.")
       .own(0.85);
   v(p.min_lead, "min_lead", {0.12, "fraction", {0.0, 1.0}},
-    "By how much more support an answer must have than any other place; else it is refused as ambiguous.")
+    "By how much more support an answer must have than any other place; else it is rejected as ambiguous.")
       .own(0.12);
   v(p.max_position_deviation, "max_position_deviation", {0.05, "m", {0.001, 10.0}},
-    "Answers whose match leaves a direction more uncertain (standard deviation) are refused as imprecise.")
+    "Answers whose match leaves a direction more uncertain (standard deviation) are rejected as imprecise.")
       .own(0.05);
   v(p.max_heading_deviation, "max_heading_deviation", {0.04, "rad", {0.001, 3.15}}, "Likewise of the heading.")
       .own(0.04);
@@ -43,7 +43,8 @@ void declare_tracking(const Section& v, TrackingParameters& p) {
   v(p.lost_deviation, "lost_deviation", {0.6, "m", {0.001, 100.0}}, "And above which it says that it is lost.")
       .own(0.6);
   v(p.doubt_distance, "doubt_distance", {1.0, "m", {0.01, 100.0}},
-    "After so much way with refused matches only it is uncertain; after three times as much, lost. And so much way "
+    "After so much travel with rejected matches only it is uncertain; after three times as much, lost. And so much "
+    "travel "
     "must fit the map after a search of all of it before its answer is relied on.")
       .own(1.0);
 }

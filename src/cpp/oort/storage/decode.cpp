@@ -78,14 +78,14 @@ void read_sidecar(capnp::SidecarDb::Reader in, Map& map) {
     result.target = incr.getTarget();
     read(incr.getSmTid(), result.T_local_id, result.covariance);
     result.T_target_id = read(incr.getTargetTid());
-    result.hit_fraction = incr.getHitPct();
+    result.inlier_ratio = incr.getHitPct();
   }
   for (const auto loop : in.getLoops()) {
     LoopResult& result = map.loop_results.emplace_back();
     result.id = loop.getId();
     result.target = loop.getTarget();
     read(loop.getIdTtarget(), result.T_id_target, result.covariance);
-    result.hit_fraction = loop.getHitPct();
+    result.inlier_ratio = loop.getHitPct();
   }
 }
 

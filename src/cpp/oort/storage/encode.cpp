@@ -78,7 +78,7 @@ void write_sidecar(const Map& map, capnp::SidecarDb::Builder out) {
     incrs[k].setTarget(result.target);
     write(result.T_local_id, result.covariance, incrs[k].initSmTid());
     write(result.T_target_id, incrs[k].initTargetTid());
-    incrs[k].setHitPct(result.hit_fraction);
+    incrs[k].setHitPct(result.inlier_ratio);
   }
   auto loops = out.initLoops(static_cast<unsigned>(map.loop_results.size()));
   for (unsigned k = 0; k < loops.size(); ++k) {
@@ -86,7 +86,7 @@ void write_sidecar(const Map& map, capnp::SidecarDb::Builder out) {
     loops[k].setId(result.id);
     loops[k].setTarget(result.target);
     write(result.T_id_target, result.covariance, loops[k].initIdTtarget());
-    loops[k].setHitPct(result.hit_fraction);
+    loops[k].setHitPct(result.inlier_ratio);
   }
 }
 

@@ -29,7 +29,7 @@ class Attempt:
     """accepted; contradicted: accepted, but the last solution leaves it out; else why it was rejected"""
     T_candidate_query: Pose
     """where the match put the query; where the graph had it if there was no match"""
-    hit_fraction: float
+    inlier_ratio: float
     switch: float | None
     """of an accepted one at the last solution"""
 
@@ -53,6 +53,6 @@ def write_attempts(path: Path, attempts: Sequence[Attempt]) -> None:
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["query", "candidate", "verdict", "x", "y", "theta", "hit_fraction", "switch"])
     for a in attempts:
-        numbers = [f"{value:.4f}" for value in (*a.T_candidate_query, a.hit_fraction)]
+        numbers = [f"{value:.4f}" for value in (*a.T_candidate_query, a.inlier_ratio)]
         table.writerow([a.query, a.candidate, a.verdict, *numbers, "" if a.switch is None else f"{a.switch:.4f}"])
     write_atomically(path, text.getvalue().encode())

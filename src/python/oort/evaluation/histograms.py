@@ -12,16 +12,16 @@ from oort._core import Map
 from oort.evaluation.graph import squared_errors
 from oort.export.chart import Panel
 
-HIT_EDGES = tuple(k / 20 for k in range(20))
-"""Lower limits of the bins of hit fractions. The last bin of a histogram is all from its limit on."""
+INLIER_EDGES = tuple(k / 20 for k in range(20))
+"""Lower limits of the bins of inlier ratios. The last bin of a histogram is all from its limit on."""
 CHI2_EDGES = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """Likewise of chi^2: 7.8 is the 95 % limit of three degrees of freedom."""
 _SWITCHED_OFF = 0.5
 _ODOMETRY = 1  # the type of an edge
 _TITLES = {
-    ("hits", "scans"): "hit fraction of tracked scans",
-    ("hits", "closures"): "hit fraction of closures",
-    ("hits", "refused"): "hit fraction of refused closures",
+    ("inlier_ratio", "scans"): "inlier ratio of tracked scans",
+    ("inlier_ratio", "closures"): "inlier ratio of closures",
+    ("inlier_ratio", "rejected"): "inlier ratio of rejected closures",
     ("chi2", "laser"): "chi2 of matched links",
     ("chi2", "odometry"): "chi2 of odometry links",
     ("chi2", "closures"): "chi2 of closures that are on",
@@ -30,11 +30,11 @@ _TITLES = {
 
 
 def make_histograms(
-    map_: Map, scan_hits: Sequence[float], refused_hits: Sequence[float] = ()
+    map_: Map, scans: Sequence[float], rejected: Sequence[float] = ()
 ) -> dict[str, dict[str, list[float]]]:
-    """Counts by hit fraction and by chi^2 (squared Mahalanobis distance), as report.json has them.
+    """Counts by inlier ratio and by chi^2 (squared Mahalanobis distance), as report.json has them.
 
-    `scan_hits` are the hit fractions of the scans that were matched, `refused_hits` those of closures that were refused
+    `scans` are the inlier ratios of the scans that were matched, `rejected` those of closures that were rejected
     though there was a match. The links' chi^2 are at the map's poses; a switch
     takes nothing from it.
     """
@@ -42,11 +42,11 @@ def make_histograms(
     chain_chi2, closure_chi2 = _chi_squared(map_, chain), _chi_squared(map_, closures)
     odometry, off = chain["type"] == _ODOMETRY, closures["switch"] < _SWITCHED_OFF
     return {
-        "hits": {
-            "edges": list(HIT_EDGES),
-            "scans": _count(scan_hits, HIT_EDGES),
-            "closures": _count(map_.loop_results["hit_fraction"], HIT_EDGES),
-            "refused": _count(refused_hits, HIT_EDGES),
+        "inlier_ratio": {
+            "edges": list(INLIER_EDGES),
+            "scans": _count(scans, INLIER_EDGES),
+            "closures": _count(map_.loop_results["hit_fraction"], INLIER_EDGES),
+            "rejected": _count(rejected, INLIER_EDGES),
         },
         "chi2": {
             "edges": list(CHI2_EDGES),

@@ -19,8 +19,8 @@ class MappingHealth(Health):
     """where the map is saved; empty for nowhere"""
     tracking: str
     """tracking, uncertain, lost or idle"""
-    hit_fraction: float | None
-    """share of the last scan's returns that hit what was seen before"""
+    inlier_ratio: float | None
+    """share of the last scan's returns that lie on what was seen before"""
     nodes: int
     closures: int
     """loops and docks that were closed"""
@@ -63,7 +63,7 @@ class MappingHealth(Health):
         yield "path", self.path or "-"
         yield from self.figures_of_scans()
         yield "tracking", self.tracking
-        yield "hit fraction", number(self.hit_fraction, 2)
+        yield "inlier ratio", number(self.inlier_ratio, 2)
         yield "nodes", str(self.nodes)
         yield "closures", str(self.closures)
         yield "last save", self.last_save or "-"
@@ -93,7 +93,7 @@ def look_over(live: LiveSession, scan_topic: str, waiting_for: str, imu_trouble:
         ms_per_scan=figures.milliseconds.spread,
         delay_ms=figures.delays.spread,
         tracking=figures.tracking(snapshot.state).value,
-        hit_fraction=None if result is None else result.hit_fraction,
+        inlier_ratio=None if result is None else result.inlier_ratio,
         nodes=snapshot.num_nodes,
         closures=snapshot.closures,
         last_save=saver.last_saved,

@@ -72,8 +72,8 @@ class LocalizerHealth(Health):
         if self.last.state == "lost" and not self.told_by_other:
             yield WARN, "The place is lost; drive slowly to where more is in view, or tell the place on initialpose"
         if self.last.state == "searching" and not self.told_by_other:
-            refusals = _by_reason(self.last.statistics["search_refusals"])
-            yield WARN, f"The place is not found yet ({refusals}); drive on, or tell it on initialpose"
+            rejections = _by_reason(self.last.statistics["search_rejections"])
+            yield WARN, f"The place is not found yet ({rejections}); drive on, or tell it on initialpose"
         yield from self.problems_of_queue()
 
     def figures(self) -> Iterator[tuple[str, str]]:
@@ -87,9 +87,9 @@ class LocalizerHealth(Health):
         yield "position deviation [m]", number(position, 3)
         yield "heading deviation [rad]", number(heading, 3)
         yield "scans matched", str(statistics.get("matched", 0))
-        yield "matches refused", _by_reason(statistics.get("match_refusals", {}))
+        yield "matches rejected", _by_reason(statistics.get("match_rejections", {}))
         yield "searches", str(statistics.get("searches", 0))
-        yield "searches refused", _by_reason(statistics.get("search_refusals", {}))
+        yield "searches rejected", _by_reason(statistics.get("search_rejections", {}))
         yield "jumps", str(statistics.get("jumps", 0))
         yield "map -> odom told by another", "yes" if self.told_by_other else "no"
         yield from self.figures_of_waiting()

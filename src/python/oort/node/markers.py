@@ -16,13 +16,13 @@ from oort._core import Map
 from oort.node.messages import rotation
 from oort.recording import Pose
 
-_ODOMETRY = 1  # the type of an edge whose scan match was refused
-_BELIEVED = 0.5  # a link whose switch is below it counts as refused
+_ODOMETRY = 1  # the type of an edge whose scan match was rejected
+_BELIEVED = 0.5  # a link whose switch is below it counts as contradicted
 
 # Each kind lies a little higher than the one before it, so that what overlaps does not flicker.
 _CHAIN = ("chain", ColorRGBA(0.25, 0.45, 0.9, 1.0), 0.01)
 _BY_ODOMETRY = ("chain by odometry", ColorRGBA(1.0, 0.6, 0.0, 1.0), 0.02)
-_REFUSED = ("closures refused", ColorRGBA(0.9, 0.1, 0.1, 1.0), 0.03)
+_CONTRADICTED = ("closures contradicted", ColorRGBA(0.9, 0.1, 0.1, 1.0), 0.03)
 _CLOSURES = ("closures", ColorRGBA(0.1, 0.75, 0.2, 1.0), 0.04)
 _NODES = ("nodes", ColorRGBA(0.1, 0.2, 0.55, 1.0), 0.05)
 _PLACES = ("places", ColorRGBA(0.75, 0.1, 0.75, 1.0), 0.06)
@@ -47,7 +47,7 @@ def graph_markers(map_: Map, places: Sequence[tuple[str, str, Pose]], frame: str
     markers = [
         _lines(_CHAIN, points, edges["i"][~by_odometry], edges["j"][~by_odometry]),
         _lines(_BY_ODOMETRY, points, edges["i"][by_odometry], edges["j"][by_odometry]),
-        _lines(_REFUSED, points, closures["i"][~believed], closures["j"][~believed]),
+        _lines(_CONTRADICTED, points, closures["i"][~believed], closures["j"][~believed]),
         _lines(_CLOSURES, points, closures["i"][believed], closures["j"][believed]),
         _marker(_NODES, Marker.SPHERE_LIST, (_NODE_SIZE,) * 3, points=points),
     ]

@@ -13,6 +13,7 @@ from oort.export import write_picture, write_tum
 from oort.export.files import write_atomically
 from oort.offline.drawing import draw_map
 from oort.offline.follow import LocalizedDrive
+from oort.report.replay_report import REPORT_VERSION
 
 
 def write_localization(
@@ -36,6 +37,7 @@ def write_localization(
 def _report(drive: LocalizedDrive, map_path: str, parameters: Parameters) -> dict[str, Any]:
     deviations = np.array(drive.deviations or [0.0])
     return {
+        "report_version": REPORT_VERSION,
         "input": drive.recording.name,
         "kind": drive.recording.kind,
         "notes": list(drive.recording.notes),
@@ -62,9 +64,9 @@ def format_localization(report: dict[str, Any]) -> str:
     """The figures as aligned lines of text."""
     per_scan = report["timings"]["ms_per_scan"]
     rows = [
-        ("scans", f"{report['scans']} ({report['matched']} matched{_reasons(report['match_refusals'])})"),
+        ("scans", f"{report['scans']} ({report['matched']} matched{_reasons(report['match_rejections'])})"),
         ("states", ", ".join(f"{state} {n}" for state, n in report["states"].items())),
-        ("searches", f"{report['searches']}{_reasons(report['search_refusals'])}, {report['jumps']} jumps"),
+        ("searches", f"{report['searches']}{_reasons(report['search_rejections'])}, {report['jumps']} jumps"),
         ("deviation", "median {median:.3f} m, max {max:.3f} m".format(**report["position_deviation"])),
         ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),
     ]
@@ -73,4 +75,4 @@ def format_localization(report: dict[str, Any]) -> str:
 
 
 def _reasons(reasons: dict[str, int]) -> str:
-    return "; refused: " + ", ".join(f"{why} {n}" for why, n in sorted(reasons.items())) if reasons else ""
+    return "; rejected: " + ", ".join(f"{why} {n}" for why, n in sorted(reasons.items())) if reasons else ""

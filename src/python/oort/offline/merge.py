@@ -68,13 +68,13 @@ def merge(
 def _told(merged: Merged) -> list[str]:
     x, y, theta = merged.T_a_b
     closures = merged.closures
-    refused = ", ".join(f"{why} {n}" for why, n in sorted(closures["refused"].items()) if n)
+    rejected = ", ".join(f"{why} {n}" for why, n in sorted(closures["rejected"].items()) if n)
     lines = [
         f"the second map's origin was found at x {x:.2f} m, y {y:.2f} m, theta {theta:.3f} rad of the first, "
         f"{_FOUND_BY[merged.found_by]}: of {merged.views} views {merged.views_that_fit} fit there, "
         f"{merged.views_that_contradict} contradict",
         f"closures across: {closures['tried']} tried, {closures['accepted']} accepted, {merged.closures_kept} kept"
-        + (f"; refused: {refused}" if refused else ""),
+        + (f"; rejected: {rejected}" if rejected else ""),
     ]
     lines += [
         f"place {space}/{id}: the first map's is kept; the second's lies {distance:.2f} m from it"

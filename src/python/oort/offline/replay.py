@@ -70,7 +70,7 @@ def replay(
     recorder = TrajectoryRecorder(recording.sensor_on_base)
     schedule = make_schedule(options.events, _Caller(session, recorder))
     times: list[float] = []
-    scan_hits: list[float] = []
+    scan_inlier_ratios: list[float] = []
     if options.resume is not None:
         session.load(options.resume[0], ignore_checksum=options.ignore_checksum)
         session.resume("", options.resume[1])
@@ -86,7 +86,7 @@ def replay(
             watch.scan_seconds.append(time.perf_counter() - started - waited)
             watch.waited_seconds.append(waited)
             if result is not None and result.was_tracked:
-                scan_hits.append(result.hit_fraction)
+                scan_inlier_ratios.append(result.inlier_ratio)
         recorder.add(scan.stamp, (mapped or scan).odometry, result)
         times.append(scan.time)
     if not times:
@@ -106,7 +106,7 @@ def replay(
         watch,
         max(times) - min(times),
         options.keep_attempts,
-        scan_hits,
+        scan_inlier_ratios,
     )
 
 

@@ -42,8 +42,8 @@ class Drive:
     recorded_seconds: float
     keep_attempts: bool = False
     """whether to tell of each attempt to close a loop"""
-    scan_hits: Sequence[float] = ()
-    """hit fractions of the scans that were matched"""
+    scan_inlier_ratios: Sequence[float] = ()
+    """inlier ratios of the scans that were matched"""
 
     @property
     def map(self) -> Map:
@@ -115,7 +115,7 @@ def _write_pictures(
 def _histograms(drive: Drive, map_: Map) -> dict[str, Any]:
     attempts = drive.session.mapper.closure_attempts
     rejected = [hits for _, _, rejection, _, hits in attempts if rejection is not None and hits > 0.0]
-    return make_histograms(map_, drive.scan_hits, rejected)
+    return make_histograms(map_, drive.scan_inlier_ratios, rejected)
 
 
 def _report(

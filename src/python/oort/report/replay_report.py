@@ -7,6 +7,9 @@ from typing import Any
 
 from oort.recording import Recording
 
+REPORT_VERSION = 2
+"""of report.json (docs/formats.md): another one if a key is renamed or changes its meaning"""
+
 
 def make_report(
     recording: Recording,
@@ -19,6 +22,7 @@ def make_report(
 ) -> dict[str, Any]:
     """Everything that report.json holds. Only ``timings`` differs between two replays of the same input."""
     return {
+        "report_version": REPORT_VERSION,
         "input": recording.name,
         "kind": recording.kind,
         "notes": list(recording.notes),
@@ -39,7 +43,7 @@ def format_table(report: Mapping[str, Any]) -> str:
         ("scans", f"{report['scans']} ({report['scans_matched']} matched, {report['scans_too_small']} too small)"),
         (
             "nodes",
-            f"{report['nodes']} ({report['odometry_links']} linked by odometry{_reasons(report['match_refusals'])})",
+            f"{report['nodes']} ({report['odometry_links']} linked by odometry{_reasons(report['match_rejections'])})",
         ),
         ("tracking", _tracking(report["tracking"])),
         ("loop closures", _closures(report["loops"])),
@@ -60,7 +64,7 @@ def format_table(report: Mapping[str, Any]) -> str:
 
 
 def _closures(counts: Mapping[str, Any]) -> str:
-    return f"{counts['tried']} tried, {counts['accepted']} accepted{_reasons(counts['refused'], ', refused: ')}"
+    return f"{counts['tried']} tried, {counts['accepted']} accepted{_reasons(counts['rejected'], ', rejected: ')}"
 
 
 def _tracking(scans: Mapping[str, int]) -> str:

@@ -40,7 +40,7 @@ struct MatcherParams {
   double theta_step = 0.01;         ///< of the search grid [rad]
   int hit_value = 100;              ///< a point whose cell holds at least this is a hit
   int min_points = 10;              ///< fewer valid points are kTooFewPoints
-  double min_hit_fraction = 0.4;    ///< less is kLowHits
+  double min_inlier_ratio = 0.4;    ///< less is kLowHits
   double min_score = 0.0;           ///< poses that score less are not searched for: none is kLowHits, at the guess
   double information_scale = 10.0;  ///< log-likelihood of one independent point; for 1.5 cm of range noise
   double min_curvature = 0.015;     ///< a direction constrained by less than this share of the points is degenerate
@@ -57,7 +57,7 @@ struct Match {
   double score = 0.0;         ///< mean table value under the points, 0..1 of the largest value
   int hits = 0;               ///< points that lie on the map
   int points = 0;             ///< valid points
-  double hit_fraction = 0.0;  ///< hits / points
+  double inlier_ratio = 0.0;  ///< hits / points
   /// Of the match alone (x, y, theta), in the table's axes, from the shape of the score; 0 along degenerate directions.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   /// Positive definite, in the table's axes: the match fused with the prior. Without a prior, degenerate directions

@@ -40,17 +40,17 @@ std::vector<std::uint64_t> outwards(std::uint64_t begin, std::uint64_t joint, st
 
 ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, const Parameters& parameters) {
   make_dock_closures_firm(map, parameters.dock_graph_builder.closure_firmness);
-  const Chains chains = Chains::of_map(map);
+  const TrajectorySegments segments = TrajectorySegments::of_map(map);
   LoopClosureBuilder loops(parameters);
   ClosureCounts counts;
   ClosureLog log;
   const std::size_t link = map.graph.edges.size();
   map.graph.edges.push_back(joint_edge(map, joint));
   std::uint64_t next_id = next_edge_id(map.graph);
-  SolveSchedule schedule(begin);  // what surprises is where the nodes after those lie
+  SolveSchedule schedule(begin);  // a large innovation is where the nodes after those lie
   for (const std::uint64_t node : outwards(begin, joint.after, map.graph.nodes.size())) {
-    loops.look_before(map, chains, node, begin);
-    for (const Closure& closure : loops.work_off(map, chains, counts, log)) {
+    loops.look_before(map, segments, node, begin);
+    for (const Closure& closure : loops.work_off(map, segments, counts, log)) {
       schedule.add_closure(add_closure(closure, next_id++, map));
     }
     const SolveSchedule::Extent extent = schedule.due(map.graph.nodes.size(), counts.accepted);

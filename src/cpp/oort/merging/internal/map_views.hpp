@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "oort/localization/relocalizer.hpp"
-#include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/map/trajectory_segments.hpp"
 
 namespace oort {
 
@@ -20,7 +20,7 @@ struct MapView {
 
 /// Views of a map spread evenly over it: each is of the place that is farthest from those before it, until there are
 /// `max_views`, or none is left that is at least `spacing` [m] away. `nodes`: how many scans a view has at most.
-std::vector<MapView> spread_views(const Map& map, const Chains& chains, std::size_t max_views, double spacing,
-                                  std::uint64_t nodes);
+std::vector<MapView> spread_views(const Map& map, const TrajectorySegments& segments, std::size_t max_views,
+                                  double spacing, std::uint64_t nodes);
 
 }  // namespace oort

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "oort/map/chains.hpp"
 #include "oort/map/map.hpp"
+#include "oort/map/trajectory_segments.hpp"
 
 namespace oort {
 
@@ -24,10 +24,11 @@ std::vector<SurfacePoint> surface_points(const frsm::Points& points);
 
 /// Which way the surfaces of a submap face. A thin wall looks the same to a scan matcher from both sides; here its
 /// sides differ.
-class FacingMap {
+class NormalMap {
  public:
   /// The surfaces seen from some nodes of one segment, in the frame of `origin`, a node of that segment.
-  FacingMap(const Map& map, const Chains& chains, std::uint64_t origin, const std::vector<std::uint64_t>& nodes);
+  NormalMap(const Map& map, const TrajectorySegments& segments, std::uint64_t origin,
+            const std::vector<std::uint64_t>& nodes);
 
   /// Of the surfaces of a scan that lie on known ones along the same line, the share that face the same way, in [0, 1];
   /// 1 if none do.

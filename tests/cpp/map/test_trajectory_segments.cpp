@@ -16,53 +16,53 @@ using testing::make_room;
 using testing::World;
 using Ids = std::vector<std::uint64_t>;
 
-Chains make_chains(const std::vector<int>& sizes) {
-  Chains chains;
+TrajectorySegments make_segments(const std::vector<int>& sizes) {
+  TrajectorySegments segments;
   for (const int size : sizes) {
-    for (int k = 0; k < size; ++k) chains.add(k == 0, true, {0.1 * k, 0.0, 0.0});
+    for (int k = 0; k < size; ++k) segments.add(k == 0, true, {0.1 * k, 0.0, 0.0});
   }
-  return chains;
+  return segments;
 }
 
-TEST(Chains, KnowWhereSegmentsBeginAndEnd) {
-  const Chains chains = make_chains({3, 1, 4});
-  ASSERT_EQ(chains.size(), 8u);
+TEST(TrajectorySegments, KnowWhereSegmentsBeginAndEnd) {
+  const TrajectorySegments segments = make_segments({3, 1, 4});
+  ASSERT_EQ(segments.size(), 8u);
   const Ids begins{0, 0, 0, 3, 4, 4, 4, 4};
   const Ids ends{3, 3, 3, 4, 8, 8, 8, 8};
   for (std::uint64_t k = 0; k < 8; ++k) {
-    EXPECT_EQ(chains.segment_begin(k), begins[k]) << k;
-    EXPECT_EQ(chains.segment_end(k), ends[k]) << k;
+    EXPECT_EQ(segments.segment_begin(k), begins[k]) << k;
+    EXPECT_EQ(segments.segment_end(k), ends[k]) << k;
   }
-  EXPECT_TRUE(chains.same_segment(4, 7));
-  EXPECT_FALSE(chains.same_segment(3, 4));
+  EXPECT_TRUE(segments.same_segment(4, 7));
+  EXPECT_FALSE(segments.same_segment(3, 4));
 }
 
-TEST(Chains, TheFirstNodeBeginsASegmentWhateverIsSaid) {
-  Chains chains;
-  chains.add(false, true, {1.0, 2.0, 3.0});
-  EXPECT_EQ(chains.segment_begin(0), 0u);
-  EXPECT_DOUBLE_EQ(chains.local_pose(0).y, 2.0);
+TEST(TrajectorySegments, TheFirstNodeBeginsASegmentWhateverIsSaid) {
+  TrajectorySegments segments;
+  segments.add(false, true, {1.0, 2.0, 3.0});
+  EXPECT_EQ(segments.segment_begin(0), 0u);
+  EXPECT_DOUBLE_EQ(segments.local_pose(0).y, 2.0);
 }
 
-TEST(Chains, NeighborhoodIsAsMuchOfTheSegmentAsFits) {
-  const Chains chains = make_chains({2, 10, 3});
-  EXPECT_EQ(chains.neighborhood(7, 5), (Ids{5, 6, 7, 8, 9}));
-  EXPECT_EQ(chains.neighborhood(7, 4), (Ids{5, 6, 7, 8}));
-  EXPECT_EQ(chains.neighborhood(2, 5), (Ids{2, 3, 4, 5, 6}));  // the beginning moves the window on
-  EXPECT_EQ(chains.neighborhood(11, 5), (Ids{9, 10, 11}));     // the end cuts it: more may come later
-  EXPECT_EQ(chains.neighborhood(13, 100), (Ids{12, 13, 14}));
-  EXPECT_EQ(chains.neighborhood(7, 1), (Ids{7}));
+TEST(TrajectorySegments, NeighborhoodIsAsMuchOfTheSegmentAsFits) {
+  const TrajectorySegments segments = make_segments({2, 10, 3});
+  EXPECT_EQ(segments.neighborhood(7, 5), (Ids{5, 6, 7, 8, 9}));
+  EXPECT_EQ(segments.neighborhood(7, 4), (Ids{5, 6, 7, 8}));
+  EXPECT_EQ(segments.neighborhood(2, 5), (Ids{2, 3, 4, 5, 6}));  // the beginning moves the window on
+  EXPECT_EQ(segments.neighborhood(11, 5), (Ids{9, 10, 11}));     // the end cuts it: more may come later
+  EXPECT_EQ(segments.neighborhood(13, 100), (Ids{12, 13, 14}));
+  EXPECT_EQ(segments.neighborhood(7, 1), (Ids{7}));
 }
 
-TEST(Chains, NeighborhoodLeavesOutWhatOdometryPlacedButNotTheNodeItself) {
-  Chains chains;
-  for (int k = 0; k < 7; ++k) chains.add(false, k != 2 && k != 4, {});
-  EXPECT_EQ(chains.neighborhood(3, 7), (Ids{0, 1, 3, 5, 6}));
-  EXPECT_EQ(chains.neighborhood(4, 3), (Ids{3, 4, 5}));
-  EXPECT_FALSE(chains.is_matched(2));
+TEST(TrajectorySegments, NeighborhoodLeavesOutWhatOdometryPlacedButNotTheNodeItself) {
+  TrajectorySegments segments;
+  for (int k = 0; k < 7; ++k) segments.add(false, k != 2 && k != 4, {});
+  EXPECT_EQ(segments.neighborhood(3, 7), (Ids{0, 1, 3, 5, 6}));
+  EXPECT_EQ(segments.neighborhood(4, 3), (Ids{3, 4, 5}));
+  EXPECT_FALSE(segments.is_matched(2));
 }
 
-TEST(Chains, AreRecoveredFromAMap) {
+TEST(TrajectorySegments, AreRecoveredFromAMap) {
   const World world = make_room();
   const std::vector<Pose2> truth = laps(0.4);
   Mapper mapper(Parameters{}, testing::kMount);
@@ -77,13 +77,13 @@ TEST(Chains, AreRecoveredFromAMap) {
   ASSERT_GT(paused, 3u);
   ASSERT_EQ(resumed, 2 * paused);
 
-  const Chains chains = Chains::of_map(map);
-  ASSERT_EQ(chains.size(), 3 * paused);
-  for (std::uint64_t node = 0; node < chains.size(); ++node) {
-    EXPECT_EQ(chains.segment_begin(node), node / paused * paused) << node;
-    EXPECT_TRUE(chains.is_matched(node)) << node;
-    const std::uint64_t begin = chains.segment_begin(node);
-    const Pose2 recovered = between(chains.local_pose(begin), chains.local_pose(node));
+  const TrajectorySegments segments = TrajectorySegments::of_map(map);
+  ASSERT_EQ(segments.size(), 3 * paused);
+  for (std::uint64_t node = 0; node < segments.size(); ++node) {
+    EXPECT_EQ(segments.segment_begin(node), node / paused * paused) << node;
+    EXPECT_TRUE(segments.is_matched(node)) << node;
+    const std::uint64_t begin = segments.segment_begin(node);
+    const Pose2 recovered = between(segments.local_pose(begin), segments.local_pose(node));
     const Pose2 tracked = between(map.incremental_results[begin].T_local_id, map.incremental_results[node].T_local_id);
     EXPECT_NEAR(recovered.x, tracked.x, 1e-9);
     EXPECT_NEAR(recovered.y, tracked.y, 1e-9);
@@ -91,12 +91,12 @@ TEST(Chains, AreRecoveredFromAMap) {
   }
 }
 
-TEST(Chains, OfAMapWithoutLinksAreSingleNodes) {
+TEST(TrajectorySegments, OfAMapWithoutLinksAreSingleNodes) {
   Map map;
   for (std::uint64_t id = 0; id < 3; ++id) map.graph.nodes.push_back({id, {}});
-  const Chains chains = Chains::of_map(map);
-  for (std::uint64_t id = 0; id < 3; ++id) EXPECT_EQ(chains.segment_begin(id), id);
-  EXPECT_EQ(Chains::of_map(Map{}).size(), 0u);
+  const TrajectorySegments segments = TrajectorySegments::of_map(map);
+  for (std::uint64_t id = 0; id < 3; ++id) EXPECT_EQ(segments.segment_begin(id), id);
+  EXPECT_EQ(TrajectorySegments::of_map(Map{}).size(), 0u);
 }
 
 class SubmapCacheTest : public ::testing::Test {
@@ -105,7 +105,7 @@ class SubmapCacheTest : public ::testing::Test {
     const std::vector<Pose2> truth = laps(0.6);
     std::vector<Pose2> places;
     for (std::size_t k = 0; k < truth.size(); k += 6) places.push_back(truth[k]);
-    append_chain(make_room(), places, {}, map, chains);
+    append_chain(make_room(), places, {}, map, segments);
   }
 
   using TableCache = SubmapCache<frsm::Table>;
@@ -114,7 +114,7 @@ class SubmapCacheTest : public ::testing::Test {
   }
 
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
 };
 
 void expect_equal(const frsm::Table& a, const frsm::Table& b) {
@@ -137,13 +137,13 @@ void expect_equal(const frsm::Table& a, const frsm::Table& b) {
 TEST_F(SubmapCacheTest, ServesFromMemoryAndRedrawsTheSame) {
   ASSERT_GT(map.clouds.size(), 20u);
   TableCache large = cache(64);
-  const auto first = large.get(map, chains, 10);
-  EXPECT_EQ(large.get(map, chains, 10), first);  // not drawn again
+  const auto first = large.get(map, segments, 10);
+  EXPECT_EQ(large.get(map, segments, 10), first);  // not drawn again
 
   TableCache small = cache(1);
-  const auto drawn = small.get(map, chains, 10);
-  small.get(map, chains, 3);
-  const auto redrawn = small.get(map, chains, 10);
+  const auto drawn = small.get(map, segments, 10);
+  small.get(map, segments, 3);
+  const auto redrawn = small.get(map, segments, 10);
   EXPECT_NE(redrawn, drawn);
   expect_equal(*redrawn, *drawn);
   expect_equal(*redrawn, *first);
@@ -153,38 +153,38 @@ TEST_F(SubmapCacheTest, OrderOfQueriesDoesNotMatter) {
   TableCache forward = cache(3);
   TableCache backward = cache(3);
   std::vector<std::shared_ptr<const frsm::Table>> tables(12);
-  for (std::uint64_t node = 0; node < 12; ++node) tables[node] = forward.get(map, chains, node);
-  for (std::uint64_t node = 12; node-- > 0;) expect_equal(*backward.get(map, chains, node), *tables[node]);
+  for (std::uint64_t node = 0; node < 12; ++node) tables[node] = forward.get(map, segments, node);
+  for (std::uint64_t node = 12; node-- > 0;) expect_equal(*backward.get(map, segments, node), *tables[node]);
 }
 
 TEST_F(SubmapCacheTest, FollowsANeighborhoodThatGrows) {
   TableCache grown = cache(64);
-  Chains young;
-  for (std::uint64_t node = 0; node < chains.size(); ++node) {
-    young.add(node == 0, true, chains.local_pose(node));
+  TrajectorySegments young;
+  for (std::uint64_t node = 0; node < segments.size(); ++node) {
+    young.add(node == 0, true, segments.local_pose(node));
     if (node >= 10) grown.get(map, young, 10);
   }
-  expect_equal(*grown.get(map, young, 10), *cache(64).get(map, chains, 10));
+  expect_equal(*grown.get(map, young, 10), *cache(64).get(map, segments, 10));
 }
 
 TEST_F(SubmapCacheTest, MayBeDrawnPieceByPiece) {
   TableCache pieces = cache(64);
   int steps = 0;
-  while (pieces.draw(map, chains, 10, 3)) ++steps;
+  while (pieces.draw(map, segments, 10, 3)) ++steps;
   EXPECT_EQ(steps, 3);  // 7 scans
-  expect_equal(*pieces.get(map, chains, 10), *cache(64).get(map, chains, 10));
-  pieces.draw(map, chains, 14, 3);  // what is half drawn is finished when it is asked for
-  expect_equal(*pieces.get(map, chains, 14), *cache(64).get(map, chains, 14));
+  expect_equal(*pieces.get(map, segments, 10), *cache(64).get(map, segments, 10));
+  pieces.draw(map, segments, 14, 3);  // what is half drawn is finished when it is asked for
+  expect_equal(*pieces.get(map, segments, 14), *cache(64).get(map, segments, 14));
 }
 
 TEST_F(SubmapCacheTest, IsInTheFrameOfItsNode) {
   Map turned = map;
-  Chains moved;
+  TrajectorySegments moved;
   const Pose2 T_other_local{30.0, -20.0, 1.0};  // where a segment's frame lies must not matter
-  for (std::uint64_t node = 0; node < chains.size(); ++node) {
-    moved.add(node == 0, true, T_other_local * chains.local_pose(node));
+  for (std::uint64_t node = 0; node < segments.size(); ++node) {
+    moved.add(node == 0, true, T_other_local * segments.local_pose(node));
   }
-  const auto here = cache(1).get(map, chains, 5);
+  const auto here = cache(1).get(map, segments, 5);
   const auto there = cache(1).get(turned, moved, 5);
   long difference = 0;
   const frsm::TableView view = here->view();

@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "oort/map/chain_walk.hpp"
+#include "oort/map/trajectory_walk.hpp"
 
 namespace oort {
 namespace {
 
 /// Ten nodes 0.3 m apart on a line: a new local map begins at node 4, and another at node 7 after a pause.
-class ChainWalkTest : public ::testing::Test {
+class TrajectoryWalkTest : public ::testing::Test {
  protected:
-  ChainWalkTest() {
+  TrajectoryWalkTest() {
     for (std::uint64_t k = 0; k < 10; ++k) {
       map.graph.nodes.push_back({k, {100.0, 100.0, 1.0}});  // the solution has no say
       const Pose2 local{0.3 * static_cast<double>(k), k < 4 ? 0.0 : 5.0, 0.0};
-      chains.add(k == 0 || k == 4 || k == 7, k != 2, local);
+      segments.add(k == 0 || k == 4 || k == 7, k != 2, local);
     }
     link(0, 3, 0.02);
     link(3, 4, 0.1);
@@ -28,34 +28,34 @@ class ChainWalkTest : public ::testing::Test {
   }
 
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
 };
 
-TEST_F(ChainWalkTest, GoesOnInANewLocalMapButNotOverAPause) {
-  const std::vector<PlacedNode> nodes = walk_chain(map, chains, 1, Direction::kForward, 20);
+TEST_F(TrajectoryWalkTest, GoesOnInANewLocalMapButNotOverAPause) {
+  const std::vector<PlacedNode> nodes = walk_trajectory(map, segments, 1, Direction::kForward, 20);
   ASSERT_EQ(nodes.size(), 6u);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     EXPECT_EQ(nodes[k].node, k + 1);
     EXPECT_NEAR(nodes[k].T_origin_node.x, 0.3 * static_cast<double>(k), 1e-9);
     EXPECT_NEAR(nodes[k].T_origin_node.y, 0.0, 1e-9);
   }
-  EXPECT_EQ(walk_chain(map, chains, 7, Direction::kForward, 20).size(), 3u);
+  EXPECT_EQ(walk_trajectory(map, segments, 7, Direction::kForward, 20).size(), 3u);
 }
 
-TEST_F(ChainWalkTest, BackwardIsTheSameWayBack) {
-  const std::vector<PlacedNode> nodes = walk_chain(map, chains, 6, Direction::kBackward, 20);
+TEST_F(TrajectoryWalkTest, BackwardIsTheSameWayBack) {
+  const std::vector<PlacedNode> nodes = walk_trajectory(map, segments, 6, Direction::kBackward, 20);
   ASSERT_EQ(nodes.size(), 7u);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     EXPECT_EQ(nodes[k].node, 6 - k);
     EXPECT_NEAR(nodes[k].T_origin_node.x, -0.3 * static_cast<double>(k), 1e-9);
   }
-  EXPECT_EQ(walk_chain(map, chains, 9, Direction::kBackward, 20).size(), 3u);
+  EXPECT_EQ(walk_trajectory(map, segments, 9, Direction::kBackward, 20).size(), 3u);
 }
 
-TEST_F(ChainWalkTest, TakesNoMoreThanAskedFor) {
-  EXPECT_EQ(walk_chain(map, chains, 0, Direction::kForward, 3).size(), 3u);
-  EXPECT_EQ(walk_chain(map, chains, 0, Direction::kForward, 1).size(), 1u);
-  EXPECT_EQ(walk_chain(map, chains, 0, Direction::kBackward, 5).size(), 1u);
+TEST_F(TrajectoryWalkTest, TakesNoMoreThanAskedFor) {
+  EXPECT_EQ(walk_trajectory(map, segments, 0, Direction::kForward, 3).size(), 3u);
+  EXPECT_EQ(walk_trajectory(map, segments, 0, Direction::kForward, 1).size(), 1u);
+  EXPECT_EQ(walk_trajectory(map, segments, 0, Direction::kBackward, 5).size(), 1u);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/loop_closure/facing.hpp"
+#include "oort/loop_closure/normal_consistency.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,11 +26,11 @@ TEST(Facing, NormalsPointToTheSensor) {
 TEST(Facing, AWallFacesTheOtherWayFromItsOtherSide) {
   const testing::World wall = {{{-4.0, 1.0}, {4.0, 1.0}}};
   Map map;
-  Chains chains;
+  TrajectorySegments segments;
   testing::append_chain(wall,
                         {{-0.4, 0.0, testing::kPi / 2}, {0.0, 0.0, testing::kPi / 2}, {0.4, 0.0, testing::kPi / 2}}, {},
-                        map, chains);
-  const FacingMap facing(map, chains, 1, {0, 1, 2});
+                        map, segments);
+  const NormalMap facing(map, segments, 1, {0, 1, 2});
   const Pose2 T_world_origin{0.0, 0.0, testing::kPi / 2};
   const Pose2 same_side{0.3, 0.2, testing::kPi / 2 - 0.3};
   const Pose2 other_side{0.1, 1.8, -testing::kPi / 2 + 0.2};
@@ -41,9 +41,9 @@ TEST(Facing, AWallFacesTheOtherWayFromItsOtherSide) {
 TEST(Facing, WhereNothingWasSeenNothingDisagrees) {
   const testing::World wall = {{{-1.0, 1.0}, {1.0, 1.0}}};
   Map map;
-  Chains chains;
-  testing::append_chain(wall, {{0.0, 0.0, testing::kPi / 2}}, {}, map, chains);
-  const FacingMap facing(map, chains, 0, {0});
+  TrajectorySegments segments;
+  testing::append_chain(wall, {{0.0, 0.0, testing::kPi / 2}}, {}, map, segments);
+  const NormalMap facing(map, segments, 0, {0});
   EXPECT_DOUBLE_EQ(facing.agreement(surfaces_from(wall, {0.0, 0.0, testing::kPi / 2}), {50.0, 0.0, 0.0}), 1.0);
   EXPECT_DOUBLE_EQ(facing.agreement({}, {}), 1.0);
 }

@@ -13,14 +13,14 @@ namespace oort {
 /// rigid, so submaps are made from them: they do not change when the graph is solved. Nodes that only odometry placed
 /// join no submap. A new segment begins with each session, after each pause, and wherever the link to the node before
 /// is very uncertain.
-class Chains {
+class TrajectorySegments {
  public:
   /// Adds the next node: `T_local_sensor` is its pose in the scan matcher's frame of its segment, `matched` whether the
   /// scan matcher saw it there.
   void add(bool begins_segment, bool matched, const Pose2& T_local_sensor);
 
   /// Recovers the segments of a map from its links and incremental results.
-  static Chains of_map(const Map& map);
+  static TrajectorySegments of_map(const Map& map);
 
   std::size_t size() const { return local_poses_.size(); }
   bool is_matched(std::uint64_t node) const { return matched_[node]; }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/local_slam/chain_builder.hpp"
+#include "oort/local_slam/trajectory_builder.hpp"
 
 #include <memory>
 
@@ -22,15 +22,15 @@ Eigen::Matrix3d least_contradiction() {
 
 }  // namespace
 
-ChainBuilder::ChainBuilder(const Parameters& parameters) : parameters_(parameters), matcher_(parameters) {}
+TrajectoryBuilder::TrajectoryBuilder(const Parameters& parameters) : parameters_(parameters), matcher_(parameters) {}
 
-void ChainBuilder::begin_map() {
+void TrajectoryBuilder::begin_map() {
   forget();
   begin_ = Begin::kMap;
   next_id_ = 0;
 }
 
-void ChainBuilder::begin_session(const SessionStart& start, std::uint64_t node_count) {
+void TrajectoryBuilder::begin_session(const SessionStart& start, std::uint64_t node_count) {
   forget();
   begin_ = Begin::kSession;
   session_ = start;
@@ -38,16 +38,16 @@ void ChainBuilder::begin_session(const SessionStart& start, std::uint64_t node_c
 }
 
 // A session on the map in memory is the same as one on that map loaded: nothing learned, nothing half done.
-void ChainBuilder::forget() {
+void TrajectoryBuilder::forget() {
   matcher_ = IncrementalGraphBuilder(parameters_);
   rejections_in_a_row_ = poor_in_a_row_ = 0;
 }
 
-void ChainBuilder::interrupt() {
+void TrajectoryBuilder::interrupt() {
   if (begin_ == Begin::kNot) begin_ = Begin::kAfterPause;
 }
 
-void ChainBuilder::track(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_base_sensor) {
+void TrajectoryBuilder::track(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_base_sensor) {
   Pose2 T_previous_sensor = between(T_odom_sensor_tracked_, scan.T_odom_sensor);
   const bool is_first = !is_going_on();
   if (is_first) {  // the first scan of a segment has nothing to be matched with
@@ -78,10 +78,10 @@ void ChainBuilder::track(LocalScan& scan, const MotionHypotheses& hypotheses, co
 
 /// A match that sees all directions says how the base moved, and whether odometry is wrong; else the hypothesis that it
 /// was found with does.
-void ChainBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_odom_base_before,
-                                   const Pose2& T_base_sensor) {
+void TrajectoryBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses,
+                                        const Pose2& T_odom_base_before, const Pose2& T_base_sensor) {
   Pose2 moved = hypotheses.T_before_after[scan.tracked.hypothesis];
-  if (!scan.missed && !scan.tracked.degenerate && scan.tracked.hit_fraction >= LocalSlamTuning::kTellingInliers) {
+  if (!scan.missed && !scan.tracked.degenerate && scan.tracked.inlier_ratio >= LocalSlamTuning::kTellingInliers) {
     const Pose2 T_odom_sensor = T_odom_sensor_tracked_ * between(T_local_sensor_tracked_, scan.tracked.T_local_sensor);
     const Pose2 matched = between(T_odom_base_before, T_odom_sensor * inverse(T_base_sensor));
     scan.odometry_is_wrong = !hypotheses.holds(matched);
@@ -97,13 +97,13 @@ void ChainBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypo
   doubt_since_anchor_ = doubt_since_newest_;
 }
 
-void ChainBuilder::extrapolate(LocalScan& scan) const {
+void TrajectoryBuilder::extrapolate(LocalScan& scan) const {
   scan.tracked.T_local_sensor = T_local_sensor_tracked_ * between(T_odom_sensor_tracked_, scan.T_odom_sensor);
 }
 
-ChainNode ChainBuilder::add_node(LocalScan& scan) {
+TrajectoryNode TrajectoryBuilder::add_node(LocalScan& scan) {
   scan.cloud.id = next_id_;
-  ChainNode node = is_going_on() ? extend(scan) : begin_segment(scan);
+  TrajectoryNode node = is_going_on() ? extend(scan) : begin_segment(scan);
   node.addition.cloud = std::make_shared<const PointCloud>(scan.cloud);
   node.addition.result.id = next_id_;
   node.addition.result.T_local_id = scan.tracked.T_local_sensor;
@@ -121,17 +121,17 @@ ChainNode ChainBuilder::add_node(LocalScan& scan) {
   return node;
 }
 
-/// The scan begins a local map at this pose. What it hit before still says how well it was matched.
-void ChainBuilder::begin_local_map(LocalScan& scan, const Pose2& T_local_sensor) {
-  const double hits = scan.tracked.hit_fraction;
+/// The scan begins a local map at this pose. Its inlier ratio before still says how well it was matched.
+void TrajectoryBuilder::begin_local_map(LocalScan& scan, const Pose2& T_local_sensor) {
+  const double inlier_ratio = scan.tracked.inlier_ratio;
   matcher_.begin(T_local_sensor);
   scan.tracked = matcher_.track(returns_of(scan.cloud), scan.cloud.time, Pose2{});
-  scan.tracked.hit_fraction = hits;
+  scan.tracked.inlier_ratio = inlier_ratio;
 }
 
-void ChainBuilder::restart_if_poor(LocalScan& scan) {
+void TrajectoryBuilder::restart_if_poor(LocalScan& scan) {
   const bool poor =
-      scan.tracked.usable() && scan.tracked.hit_fraction < LocalSlamTuning::kPoorInliers && matcher_.knows_odometry();
+      scan.tracked.usable() && scan.tracked.inlier_ratio < LocalSlamTuning::kPoorInliers && matcher_.knows_odometry();
   poor_in_a_row_ = poor ? poor_in_a_row_ + 1 : 0;
   if (poor_in_a_row_ < LocalSlamTuning::kMaxPoorScans) return;
   poor_in_a_row_ = 0;
@@ -141,33 +141,33 @@ void ChainBuilder::restart_if_poor(LocalScan& scan) {
   local_map_ = LocalMap::kFreshPoor;
 }
 
-void ChainBuilder::restart_if_rejected(const LocalScan& scan, bool matched) {
+void TrajectoryBuilder::restart_if_rejected(const LocalScan& scan, bool matched) {
   rejections_in_a_row_ = matched ? 0 : rejections_in_a_row_ + 1;
   if (rejections_in_a_row_ < LocalSlamTuning::kMaxRejectedNodes) return;
   matcher_.begin(scan.tracked.T_local_sensor);
   local_map_ = LocalMap::kFresh;
 }
 
-ChainNode ChainBuilder::begin_segment(LocalScan& scan) {
+TrajectoryNode TrajectoryBuilder::begin_segment(LocalScan& scan) {
   const LinkParameters p = link_parameters(parameters_.incremental_graph_builder);
-  ChainNode node;
+  TrajectoryNode node;
   node.addition.begins_segment = true;
   node.addition.result.target = next_id_;
   node.addition.result.covariance = unmatched_covariance(p.scanmatch_cov_scale);
   if (begin_ == Begin::kMap) return node;
   const bool is_session = begin_ == Begin::kSession;
   const std::uint64_t target = is_session ? session_.nearest_node : newest_.id;
-  node.attachment = Attachment::kLoose;
+  node.attachment = Attachment::kUntied;
   node.addition.from = target;
   node.addition.T_from_node =
       is_session ? session_.T_nearest_sensor : between(newest_.T_odom_sensor, scan.T_odom_sensor);
-  node.addition.edges = {loose_edge(
-      target, node.addition.T_from_node,
-      unmatched_covariance(is_session ? p.resume_scanmatch_cov_scale : p.inflate_scanmatch_cov_scale), scan)};
+  node.addition.edges = {
+      wide_edge(target, node.addition.T_from_node,
+                unmatched_covariance(is_session ? p.resume_scanmatch_cov_scale : p.inflate_scanmatch_cov_scale), scan)};
   return node;
 }
 
-ChainNode ChainBuilder::extend(LocalScan& scan) {
+TrajectoryNode TrajectoryBuilder::extend(LocalScan& scan) {
   const Pose2 T_newest_node = between(newest_.T_odom_sensor, scan.T_odom_sensor);
   // What is matched after a gap says where the node is from before the gap, not from the nodes within.
   const bool after_gap = anchor_.id != newest_.id;
@@ -177,7 +177,7 @@ ChainNode ChainBuilder::extend(LocalScan& scan) {
   if (match.contradicts_odometry && !is_fresh) return contradict(scan, T_newest_node, match);
   if (is_fresh) match.rejection = Rejection::kRestarted;  // the anchor is not on the map that the scan was matched with
   const bool believed = match.rejection == Rejection::kNone;
-  ChainNode node;
+  TrajectoryNode node;
   const auto add_edge = [&](std::uint64_t from, const Pose2& pose, const Eigen::Matrix3d& covariance,
                             ConstraintType type) {
     node.addition.edges.push_back({0, from, next_id_, {scan.cloud.time, next_id_, pose, covariance, type}});
@@ -204,44 +204,44 @@ ChainNode ChainBuilder::extend(LocalScan& scan) {
   }
   node.addition.begins_segment = is_fresh;
   node.addition.matched = believed || is_fresh;
-  if (is_fresh) node.attachment = local_map_ == LocalMap::kFreshPoor ? Attachment::kGuess : Attachment::kLoose;
+  if (is_fresh) node.attachment = local_map_ == LocalMap::kFreshPoor ? Attachment::kGuess : Attachment::kUntied;
   node.addition.result.target = newest_.id;
   node.addition.result.covariance = scan.tracked.covariance;
   node.addition.result.T_target_id = from_newest(scan.tracked.T_local_sensor);
-  node.addition.result.hit_fraction = scan.tracked.hit_fraction;
+  node.addition.result.inlier_ratio = scan.tracked.inlier_ratio;
   local_map_ = LocalMap::kKnown;
   return node;
 }
 
-// Odometry slipped, or was carried, or the match is a chance one: which of them is not known. A segment begins with the
-// scan, whose edge is as wide as what they say is apart, so that closures decide where it belongs.
-ChainNode ChainBuilder::contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchLink& match) {
+// Odometry slipped, or the robot was kidnapped, or the match is a chance one: which of them is not known. A segment
+// begins with the scan, whose edge is as wide as what they say is apart, so that closures decide where it belongs.
+TrajectoryNode TrajectoryBuilder::contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchLink& match) {
   const auto from_newest_node = [&](const Pose2& T_anchor_node) {
     return from_newest(anchor_.T_local_sensor * T_anchor_node);
   };
   const Pose2 apart = between(T_newest_node, from_newest_node(match.T_anchor_node));
-  const bool is_telling = scan.tracked.hit_fraction >= LocalSlamTuning::kTellingInliers;
+  const bool is_telling = scan.tracked.inlier_ratio >= LocalSlamTuning::kTellingInliers;
   const Pose2 chosen = is_telling ? from_newest_node(match.T_anchor_node_weighed) : T_newest_node;
   const double distance2 = apart.translation().squaredNorm();
   const Eigen::Vector3d far_apart(distance2, distance2, apart.theta * apart.theta);
   const Eigen::Matrix3d covariance = least_contradiction() + Eigen::Matrix3d(far_apart.asDiagonal());
-  ChainNode node;
-  node.attachment = is_telling ? Attachment::kLoose : Attachment::kGuess;
+  TrajectoryNode node;
+  node.attachment = is_telling ? Attachment::kUntied : Attachment::kGuess;
   node.addition.begins_segment = true;
   node.addition.from = newest_.id;
   node.addition.T_from_node = chosen;
-  node.addition.edges = {loose_edge(newest_.id, chosen, covariance, scan)};
+  node.addition.edges = {wide_edge(newest_.id, chosen, covariance, scan)};
   begin_local_map(scan, newest_.T_local_sensor * chosen);
   scan.tracked.rejection = Rejection::kContradictsOdometry;
   node.addition.result.target = next_id_;
   node.addition.result.covariance = covariance;
-  node.addition.result.hit_fraction = scan.tracked.hit_fraction;
+  node.addition.result.inlier_ratio = scan.tracked.inlier_ratio;
   ++counts_.contradictions;
   return node;
 }
 
-Edge ChainBuilder::loose_edge(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
-                              const LocalScan& scan) const {
+Edge TrajectoryBuilder::wide_edge(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
+                                  const LocalScan& scan) const {
   return {0, target, next_id_, {scan.cloud.time, next_id_, T_target_node, covariance, ConstraintType::kOdometry}};
 }
 

@@ -28,17 +28,17 @@ struct LocalScan {
   bool odometry_is_wrong = false;  ///< where it was doubted: a match that sees all directions says otherwise
 };
 
-/// What a node's chain hangs on.
+/// How a node's segment is tied to the nodes before.
 enum class Attachment {
-  kFirm,   ///< what was driven and seen
-  kLoose,  ///< what led to it is not known
-  kGuess,  ///< and where it was put is little more than a guess
+  kTied,    ///< what was driven and seen
+  kUntied,  ///< what led to it is not known
+  kGuess,   ///< and where it was put is little more than a guess
 };
 
-/// A node of the chain, and how well its place is known.
-struct ChainNode {
+/// A node of the trajectory, and how well its place is known.
+struct TrajectoryNode {
   NodeAddition addition;
-  Attachment attachment = Attachment::kFirm;
+  Attachment attachment = Attachment::kTied;
 };
 
 /// Where a session begins on a map that is there.
@@ -48,8 +48,8 @@ struct SessionStart {
   Pose2 T_nearest_sensor;
 };
 
-/// Counts of the chain since it was made.
-struct ChainCounts {
+/// Counts of the trajectory since it was made.
+struct TrajectoryCounts {
   std::uint64_t scans_matched = 0;
   std::uint64_t nodes = 0;
   std::uint64_t odometry_links = 0;  ///< nodes whose match was rejected
@@ -57,16 +57,16 @@ struct ChainCounts {
   std::uint64_t contradictions = 0;  ///< segments begun as odometry and scans disagreed
 };
 
-/// Follows the sensor along the chain of nodes: matches scans with the local map, links node to node, and decides when
+/// Follows the sensor along its trajectory: matches scans with the local map, links node to node, and decides when
 /// what was a local map is none any more. It knows the newest node and the last one whose match was believed, nothing
 /// of the map's solution.
 ///
 /// A fresh local map begins: with the first scan of a map, of a session, and after a pause; where the tracker itself
 /// gives up; where matches stay poor; where odometry and a match contradict each other; and after some nodes in a row
 /// that only odometry placed.
-class ChainBuilder {
+class TrajectoryBuilder {
  public:
-  explicit ChainBuilder(const Parameters& parameters);
+  explicit TrajectoryBuilder(const Parameters& parameters);
 
   /// The next scan is the first of an empty map.
   void begin_map();
@@ -91,10 +91,10 @@ class ChainBuilder {
   /// Places a scan by odometry alone.
   void extrapolate(LocalScan& scan) const;
   /// Makes the tracked scan a node: by its match where it may be trusted, else by odometry.
-  ChainNode add_node(LocalScan& scan);
+  TrajectoryNode add_node(LocalScan& scan);
 
   const IncrementalGraphBuilder& matcher() const { return matcher_; }
-  const ChainCounts& counts() const { return counts_; }
+  const TrajectoryCounts& counts() const { return counts_; }
 
  private:
   /// What the next node begins.
@@ -118,15 +118,15 @@ class ChainBuilder {
   void begin_local_map(LocalScan& scan, const Pose2& T_local_sensor);
   void restart_if_poor(LocalScan& scan);
   void restart_if_rejected(const LocalScan& scan, bool matched);
-  ChainNode begin_segment(LocalScan& scan);
-  ChainNode extend(LocalScan& scan);
-  ChainNode contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchLink& match);
-  Edge loose_edge(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
-                  const LocalScan& scan) const;
+  TrajectoryNode begin_segment(LocalScan& scan);
+  TrajectoryNode extend(LocalScan& scan);
+  TrajectoryNode contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchLink& match);
+  Edge wide_edge(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
+                 const LocalScan& scan) const;
 
   Parameters parameters_;
   IncrementalGraphBuilder matcher_;
-  ChainCounts counts_;
+  TrajectoryCounts counts_;
   Begin begin_ = Begin::kMap;
   SessionStart session_;
   LocalMap local_map_ = LocalMap::kKnown;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/map/chains.hpp"
+#include "oort/map/trajectory_segments.hpp"
 
 #include <algorithm>
 
@@ -15,14 +15,14 @@ bool is_rigid(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-void Chains::add(bool begins_segment, bool matched, const Pose2& T_local_sensor) {
+void TrajectorySegments::add(bool begins_segment, bool matched, const Pose2& T_local_sensor) {
   const std::uint64_t node = local_poses_.size();
   first_.push_back(begins_segment || node == 0 ? node : first_.back());
   matched_.push_back(matched);
   local_poses_.push_back(T_local_sensor);
 }
 
-Chains Chains::of_map(const Map& map) {
+TrajectorySegments TrajectorySegments::of_map(const Map& map) {
   const std::size_t size = map.graph.nodes.size();
   std::vector<const Edge*> step(size, nullptr);   // from the node before
   std::vector<const Edge*> match(size, nullptr);  // from the last node that was matched
@@ -34,27 +34,27 @@ Chains Chains::of_map(const Map& map) {
       is_anchor[edge.i] = true;
     }
   }
-  Chains chains;
+  TrajectorySegments segments;
   for (std::uint64_t node = 0; node < size; ++node) {
     // Without a match, but others were matched with it: the first of a new local map.
     if (match[node] == nullptr && (step[node] == nullptr || is_anchor[node])) {
-      chains.add(true, true, Pose2{});
+      segments.add(true, true, Pose2{});
       continue;
     }
     const Edge& link = match[node] != nullptr ? *match[node] : *step[node];
-    const bool rigid = is_rigid(link.constraint.covariance) && chains.same_segment(link.i, node - 1);
-    chains.add(!rigid, !rigid || match[node] != nullptr,
-               rigid ? chains.local_pose(link.i) * link.constraint.T_i_j : Pose2{});
+    const bool rigid = is_rigid(link.constraint.covariance) && segments.same_segment(link.i, node - 1);
+    segments.add(!rigid, !rigid || match[node] != nullptr,
+                 rigid ? segments.local_pose(link.i) * link.constraint.T_i_j : Pose2{});
   }
-  return chains;
+  return segments;
 }
 
-std::uint64_t Chains::segment_end(std::uint64_t node) const {
+std::uint64_t TrajectorySegments::segment_end(std::uint64_t node) const {
   const auto end = std::upper_bound(first_.begin(), first_.end(), first_[node]);
   return static_cast<std::uint64_t>(end - first_.begin());
 }
 
-std::vector<std::uint64_t> Chains::neighborhood(std::uint64_t node, std::uint64_t size) const {
+std::vector<std::uint64_t> TrajectorySegments::neighborhood(std::uint64_t node, std::uint64_t size) const {
   const std::uint64_t before = std::min(size / 2, node - segment_begin(node));
   const std::uint64_t end = std::min(segment_end(node), node - before + std::max<std::uint64_t>(size, 1));
   std::vector<std::uint64_t> nodes;

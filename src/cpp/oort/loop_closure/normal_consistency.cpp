@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/loop_closure/facing.hpp"
+#include "oort/loop_closure/normal_consistency.hpp"
 
 #include <cmath>
 
@@ -42,10 +42,10 @@ std::vector<SurfacePoint> surface_points(const frsm::Points& points) {
   return surfaces;
 }
 
-FacingMap::FacingMap(const Map& map, const Chains& chains, std::uint64_t origin,
+NormalMap::NormalMap(const Map& map, const TrajectorySegments& segments, std::uint64_t origin,
                      const std::vector<std::uint64_t>& nodes) {
   for (const std::uint64_t node : nodes) {
-    const Pose2 T_origin_node = between(chains.local_pose(origin), chains.local_pose(node));
+    const Pose2 T_origin_node = between(segments.local_pose(origin), segments.local_pose(node));
     const Eigen::Matrix2d R = turn(T_origin_node.theta);
     for (const SurfacePoint& surface : surface_points(returns_of(map.clouds[node]))) {
       const Eigen::Vector2d p = R * surface.position + T_origin_node.translation();
@@ -54,7 +54,7 @@ FacingMap::FacingMap(const Map& map, const Chains& chains, std::uint64_t origin,
   }
 }
 
-double FacingMap::agreement(const std::vector<SurfacePoint>& surfaces, const Pose2& T_origin_sensor) const {
+double NormalMap::agreement(const std::vector<SurfacePoint>& surfaces, const Pose2& T_origin_sensor) const {
   const Eigen::Matrix2d R = turn(T_origin_sensor.theta);
   int same = 0;
   int opposite = 0;
