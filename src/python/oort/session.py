@@ -168,7 +168,7 @@ class Session:
         self._path = path
 
     def resume(self, path: str, pose: Pose) -> None:
-        """Goes on with the loaded map in a new chain; ``pose`` is about where the sensor is in the map frame."""
+        """Goes on with the loaded map in a new segment; ``pose`` is about where the sensor is in the map frame."""
         resume = self._naming("map/resume")
         if self._state is not State.NOT_MAPPING:
             raise StateError(f"{resume}: the state is {self._state.value}; call {self._naming('map/stop')} first")

@@ -13,7 +13,7 @@ struct LaserScan {
   double angle_min = 0.0;        ///< bearing of ranges[0] [rad]
   double angle_increment = 0.0;  ///< [rad], negative for a clockwise sensor
   double range_min = 0.0;        ///< [m]
-  double range_max = 0.0;        ///< [m]; readings at or beyond it are "no return"
+  double range_max = 0.0;        ///< [m]; a reading at or beyond it has no return
   std::vector<float> ranges;     ///< [m]; may hold nan and inf
 };
 

@@ -29,7 +29,7 @@ Pose2 inverse(const Pose2& T_a_b);
 /// T_b_c = inverse(T_a_b) * T_a_c.
 Pose2 between(const Pose2& T_a_b, const Pose2& T_a_c);
 
-/// The pose a fraction of the way from one to another, along a straight line with the shorter turn.
+/// The pose at a fraction of the motion from one to another, along a straight line with the shorter turn.
 /// fraction 0 gives `from`, 1 gives `to`.
 Pose2 interpolate(const Pose2& from, const Pose2& to, double fraction);
 

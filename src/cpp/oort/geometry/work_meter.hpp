@@ -6,7 +6,7 @@
 namespace oort {
 
 /// Counts work while it is done. One unit is about a microsecond of one core of a laptop; it is counted from sizes,
-/// never from a clock, so that the same work counts the same everywhere. What is dear is charged before it is done.
+/// never from a clock, so that the same work counts the same everywhere. Expensive work is charged before it is done.
 class WorkMeter {
  public:
   /// What a laptop's core does.

@@ -26,7 +26,7 @@ struct Constraint {
   ConstraintType type = ConstraintType::kLaser;
 };
 
-/// A link that is always believed: between consecutive nodes of a trajectory, or from a segment to the next.
+/// An edge that is always believed: between consecutive nodes of a trajectory, or from a segment to the next.
 struct Edge {
   std::uint64_t id = 0;  ///< one counter serves both kinds of edges
   std::uint64_t i = 0;
@@ -34,14 +34,14 @@ struct Edge {
   Constraint constraint;
 };
 
-/// A link that the optimiser may switch off (Suenderhauf and Protzel 2012).
+/// An edge that the optimiser may switch off (Suenderhauf and Protzel 2012).
 struct SwitchableEdge {
   std::uint64_t id = 0;
   std::uint64_t i = 0;
   std::uint64_t j = 0;
   Constraint constraint;
   double switch_value = 1.0;  ///< in [0, 1]; 1 is on; kept between solves
-  /// How many times as much as for other links it costs to switch it off. Not in map files: who knows what the link is
+  /// How many times as much as for other edges it costs to switch it off. Not in map files: who knows what the edge is
   /// sets it.
   double firmness = 1.0;
 

@@ -13,7 +13,7 @@
 
 namespace oort {
 
-/// A link, ready to be solved with.
+/// An edge, ready to be solved with.
 struct Link {
   std::size_t i = 0;  ///< nodes
   std::size_t j = 0;
@@ -25,22 +25,22 @@ struct Link {
   bool on = true;         ///< whether it takes part in solving
 };
 
-/// Finds the poses, and the switches, at which the links that take part cost least:
+/// Finds the poses, and the switches, at which the edges that take part cost least:
 ///
-///   1/2 sum over links that are always believed of |W e|^2
-///   + 1/2 sum over switchable links of s^2 |W e|^2 + scale (1 - s)^2,
+///   1/2 sum over edges that are always believed of |W e|^2
+///   + 1/2 sum over switchable edges of s^2 |W e|^2 + scale (1 - s)^2,
 ///
-/// where scale is as many times larger as a link is firm (Suenderhauf and Protzel 2012, "Switchable Constraints for
+/// where scale is as many times larger as an edge is firm (Suenderhauf and Protzel 2012, "Switchable Constraints for
 /// Robust Pose Graph SLAM", with Psi(s) = s, gamma = 1 and the variance 1 / scale.) By Gauss-Newton steps with the
-/// damping of Levenberg and Marquardt. Each switch appears in one link only, so it is eliminated before the poses are
+/// damping of Levenberg and Marquardt. Each switch appears in one edge only, so it is eliminated before the poses are
 /// solved for (the Schur complement): with r = W e, A = W de/dposes, chi2 = |r|^2, h = chi2 + scale and g = s chi2 -
 /// scale (1 - s),
 ///
-///   the link adds  s^2 A^T (I - r r^T / h) A  to the matrix and  -(s^2 - s g / h) A^T r  to the right-hand side;
+///   the edge adds  s^2 A^T (I - r r^T / h) A  to the matrix and  -(s^2 - s g / h) A^T r  to the right-hand side;
 ///   its switch then moves by  ds = -(g + s r^T A dposes) / h.
 ///
-/// A false link's pull along its error r thus fades at once, while it still holds its ends against the other
-/// directions: much of what makes switches find the way from a bad start.
+/// A false edge's pull along its error r thus fades at once, while it still holds its ends against the other
+/// directions: which is much of what leads switches out of a bad start.
 class GraphSolver {
  public:
   enum class Progress { kMoved, kConverged, kStuck };
@@ -56,19 +56,19 @@ class GraphSolver {
   bool is_held(std::size_t node) const { return variables_[node] < 0; }
   /// |W e|^2 at the present poses.
   double squared_error(const Link& link) const { return squared_error(link, poses_); }
-  /// The switch at which a link costs least with the poses held: scale / (scale + chi2).
+  /// The switch at which an edge costs least with the poses held: scale / (scale + chi2).
   double best_switch(const Link& link, double chi2) const { return scale_of(link) / (scale_of(link) + chi2); }
 
   /// The chi2 at which a switch (above 0) is the best.
   double squared_error_at(const Link& link, double s) const { return scale_of(link) * (1.0 - s) / s; }
 
   void set_poses(std::vector<Pose2> poses) { poses_ = std::move(poses); }
-  /// Whether the link is one that may be switched off, for the steps to come.
+  /// Whether the edge is one that may be switched off, for the steps to come.
   void set_switchable(std::size_t link, bool switchable) { links_[link].switchable = switchable; }
   /// Where a switch starts.
   void set_switch(std::size_t link, double s) { links_[link].s = s; }
 
-  /// Says which links take part (one flag for each). Returns whether that is anything new.
+  /// Says which edges take part (one flag for each). Returns whether that is anything new.
   bool use(const std::vector<bool>& on);
 
   /// What a step costs, in blocks of the factor.
@@ -79,7 +79,7 @@ class GraphSolver {
   Progress step(double tolerance);
 
  private:
-  /// What a switch's way back from the poses' step needs.
+  /// What the back substitution of a switch from the poses' step needs.
   struct Eliminated {
     std::size_t link = 0;
     double gradient = 0.0;
@@ -103,7 +103,7 @@ class GraphSolver {
 
   WorkMeter* meter_ = nullptr;
   std::vector<bool> on_;
-  std::vector<std::size_t> active_;   // links that take part and have an end that is not held
+  std::vector<std::size_t> active_;   // edges that take part and have an end that is not held
   std::vector<std::size_t> pair_of_;  // for each of them its place among the pairs of cholesky_
   BlockCholesky cholesky_;
   double damping_ = 0.0;

@@ -105,7 +105,7 @@ class HuberProblem {
     return options;
   }
 
-  /// A firm link's squared error may be as many times larger before its cost is no longer squared.
+  /// A firm edge's squared error may be as many times larger before its cost is no longer squared.
   ceres::LossFunction* loss_of(const SwitchableEdge& edge) {
     if (edge.firmness == 1.0) return &loss_;
     return &firm_losses_.emplace_back(options_.huber_scale * std::sqrt(edge.firmness));
@@ -159,7 +159,7 @@ OptimizerSummary optimize_with_landmarks(Graph& graph, const std::vector<Landmar
     const double chi2 = (whitening_matrix(edge.constraint.covariance, options.whitening) * error).squaredNorm();
     summary.chi_squared.push_back(chi2);
     const double weight = std::min(1.0, options.huber_scale / std::max(std::sqrt(chi2), 1e-300));
-    edge.switch_value = std::sqrt(weight);  // a switch s weighs a link by s^2
+    edge.switch_value = std::sqrt(weight);  // a switch s weighs an edge by s^2
   }
   return summary;
 }

@@ -9,7 +9,7 @@
 
 namespace oort {
 
-/// A thing that is known again when it is seen again (a tag), seen on the way from one node to another.
+/// A landmark with an id (a tag), seen between two nodes.
 struct LandmarkObservation {
   std::uint64_t landmark = 0;  ///< which one it is: any number, the same for the same thing
   std::uint64_t before = 0;    ///< the sensor was between these two nodes,
@@ -24,9 +24,9 @@ using Landmarks = std::map<std::uint64_t, Pose2>;
 
 /// optimize() with what was seen of landmarks, which get their poses in `landmarks`; always with RobustKernel::kHuber,
 /// on observations too, as one may be of something else. The sensor's pose at an observation is interpolated between
-/// the nodes', a fraction of the way and of the shorter turn. `landmarks` holds where to start from; one that is not
-/// there starts where it was first seen. InputError, with everything unchanged, also if an observation cannot be used;
-/// the message says which.
+/// the nodes', a fraction of the translation and of the shorter turn. `landmarks` holds where to start from; one that
+/// is not there starts where it was first seen. InputError, with everything unchanged, also if an observation cannot be
+/// used; the message says which.
 OptimizerSummary optimize_with_landmarks(Graph& graph, const std::vector<LandmarkObservation>& observations,
                                          Landmarks& landmarks, const OptimizerOptions& options);
 

@@ -21,7 +21,7 @@ namespace {
 // Squared errors beyond this overflow once products of them are summed.
 constexpr double kLargestSquaredError = 1e100;
 
-/// The edge as a link. InputError, naming the edge, if its covariance has no inverse or its error is too large to
+/// The edge as a Link. InputError, naming the edge, if its covariance has no inverse or its error is too large to
 /// compute with.
 template <typename AnyEdge>
 Link link_of(const AnyEdge& edge, const std::vector<Node>& nodes, Whitening whitening) {

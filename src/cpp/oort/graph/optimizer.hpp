@@ -16,24 +16,24 @@ enum class Whitening {
   kOriginal,  ///< L e, as Mayfield's Oort did: its maps' poses are the optimum of this weighting
 };
 
-/// How a switchable link that disagrees loses its weight.
+/// How a switchable edge that disagrees loses its weight.
 enum class RobustKernel {
-  kSwitchable,  ///< by its switch: the cost of a link is at most half of switchable_constraint_scale
+  kSwitchable,  ///< by its switch: the cost of an edge is at most half of switchable_constraint_scale
   kHuber,       ///< its cost grows in proportion to its error, no longer its square: it keeps pulling, but less
 };
 
 struct OptimizerOptions {
-  /// What it costs to switch a link off: a link whose squared Mahalanobis distance equals this is half switched off.
+  /// What it costs to switch an edge off: an edge whose squared Mahalanobis distance equals this is half switched off.
   double switchable_constraint_scale = 2.0;
   Whitening whitening = Whitening::kCorrect;
   int max_iterations = 50;
-  /// Whether links that disagree with the optimum of the switches (at 95 %) are then left out, so that what is false
+  /// Whether edges that disagree with the optimum of the switches (at 95 %) are then left out, so that what is false
   /// pulls no more at all. Without it the poses are the optimum of the switchable problem.
   bool decide = true;
   /// Nodes with lower ids keep their poses: solving is then about the newest nodes only, and costs as much as they do.
   std::uint64_t first_free_node = 0;
   RobustKernel robust_kernel = RobustKernel::kSwitchable;
-  /// Standard deviations from which on a link's cost is no longer squared; for kHuber.
+  /// Standard deviations from which on an edge's cost is no longer squared; for kHuber.
   double huber_scale = 10.0;
   /// Who counts the work while it is done; may be null. With kHuber it is charged beforehand as a whole.
   WorkMeter* meter = nullptr;
@@ -55,9 +55,9 @@ struct OptimizerSummary {
   std::string message;  ///< why the solver stopped
 };
 
-/// Moves the nodes to the optimum of all links, however many of the switchable ones are false, and sets the switches:
-/// scale / (scale + chi^2), the least costly with the final poses; scale is as many times larger as a link is firm.
-/// With kHuber switches only tell what became of a link: s^2 is the share of its weight that is left, min(1,
+/// Moves the nodes to the optimum of all edges, however many of the switchable ones are false, and sets the switches:
+/// scale / (scale + chi^2), the least costly with the final poses; scale is as many times larger as an edge is firm.
+/// With kHuber switches only tell what became of an edge: s^2 is the share of its weight that is left, min(1,
 /// huber_scale / chi); nothing is decided.
 ///
 /// Starts from the graph's own poses and switch values (docs/optimiser.md). The first node of the graph, and the first

@@ -11,14 +11,14 @@
 namespace oort {
 
 /// How well a graph knows where its nodes are as seen from one of them: the covariance that adds up along the best
-/// known path of links. The truth is at most that, since other paths tell more.
+/// known path of edges. The truth is at most that, since other paths tell more.
 class RelativeUncertainty {
  public:
-  /// Takes the links that were added since the last call, and begins anew if there are fewer than before.
+  /// Takes the edges that were added since the last call, and begins anew if there are fewer than before.
   void update(const Graph& graph);
 
   /// Covariance of T_from_node (x, y, theta, along the axes of the map) for each node, at the graph's present poses;
-  /// none for nodes that no path leads to. A link that is more off than on leads nowhere.
+  /// none for nodes that no path leads to. An edge that is more off than on leads nowhere.
   std::vector<std::optional<Eigen::Matrix3d>> from(const Graph& graph, std::uint64_t from) const;
 
  private:

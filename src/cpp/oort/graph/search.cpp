@@ -15,7 +15,7 @@
 namespace oort {
 namespace {
 
-/// The part of the cost of the links that are always believed.
+/// The part of the cost of the edges that are always believed.
 double believed_cost(const GraphSolver& solver) {
   double sum = 0.0;
   for (const Link& link : solver.links()) {
@@ -24,7 +24,7 @@ double believed_cost(const GraphSolver& solver) {
   return 0.5 * sum;
 }
 
-/// The squared error of a link against what it takes to doubt it.
+/// The squared error of an edge against what it takes to doubt it.
 double strain(const GraphSolver& solver, const Link& link) {
   return solver.squared_error(link) / link.firmness;
 }
@@ -33,7 +33,7 @@ bool is_firm(const Link& link) {
   return link.firmness > 1.0;
 }
 
-/// The poses that follow from the links that are always believed alone: each node where the most certain of its links
+/// The poses that follow from the edges that are always believed alone: each node where the most certain of its edges
 /// to earlier nodes has it.
 std::vector<Pose2> chained_poses(const GraphSolver& solver) {
   std::vector<Pose2> poses = solver.poses();
@@ -73,7 +73,7 @@ void Search::run(bool decides) {
   decide();
 }
 
-/// Whether a link that was on is far off at the poses as they are; for a firm one, farther than it already was.
+/// Whether an edge that was on is far off at the poses as they are; for a firm one, farther than it already was.
 bool Search::has_large_innovation() const {
   return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
     if (!link.switchable || link.s <= agreeing_switch(link)) return false;
@@ -82,7 +82,7 @@ bool Search::has_large_innovation() const {
   });
 }
 
-/// The switch of a link that just agrees.
+/// The switch of an edge that just agrees.
 double Search::agreeing_switch(const Link& link) const {
   return solver_.best_switch(link, GraphTuning::kAgreement * link.firmness);
 }
@@ -91,8 +91,8 @@ void Search::switch_all_on() {
   for (std::size_t k = 0; k < solver_.links().size(); ++k) solver_.set_switch(k, 1.0);
 }
 
-/// From the poses as they are, and from those of the trajectory alone, which false links have not bent yet; from the
-/// better ones with firm links believed; then once more, without the links that are off there, so that those in doubt
+/// From the poses as they are, and from those of the trajectory alone, which false edges have not bent yet; from the
+/// better ones with firm edges believed; then once more, without the edges that are off there, so that those in doubt
 /// get a second chance.
 void Search::find_best_start() {
   std::vector<Pose2> best = solver_.poses();
@@ -118,14 +118,14 @@ void Search::find_best_start() {
   solver_.set_poses(std::move(best));
 }
 
-/// Makes firm links part of what is always believed, or no longer.
+/// Makes firm edges part of what is always believed, or no longer.
 void Search::believe_firm(bool believe) {
   for (std::size_t k = 0; k < solver_.links().size(); ++k) {
     if (is_firm(solver_.links()[k])) solver_.set_switchable(k, !believe);
   }
 }
 
-/// With the links whose best switch is at least this, then with those that are not off.
+/// With the edges whose best switch is at least this, then with those that are not off.
 void Search::solve_switches(double least_switch, double tolerance, int most_steps, int most_rounds) {
   std::vector<bool> on;
   for (const Link& link : solver_.links()) {
@@ -140,7 +140,7 @@ void Search::solve_switches(double least_switch, double tolerance, int most_step
   settle(is_not_off, tolerance, most_steps, most_rounds);
 }
 
-/// Leaves out the links that disagree, until those that are left agree with each other.
+/// Leaves out the edges that disagree, until those that are left agree with each other.
 void Search::decide() {
   const auto agrees = [this](const Link& link, int round) {
     const double doubt = strain(solver_, link);
@@ -152,7 +152,7 @@ void Search::decide() {
   settle(agrees, GraphTuning::kTolerance, max_iterations_, max_iterations_);
 }
 
-/// Solves with the links that the rule chooses, again and again until they stay the same.
+/// Solves with the edges that the rule chooses, again and again until they stay the same.
 template <typename Rule>
 void Search::settle(const Rule& takes_part, double tolerance, int most_steps, int most_rounds) {
   for (int round = 0; round < most_rounds; ++round) {

@@ -6,20 +6,20 @@
 
 namespace oort {
 
-/// Half the sum of chi^2 over the links that are always believed and of scale chi^2 / (scale + chi^2), the least that a
+/// Half the sum of chi^2 over the edges that are always believed and of scale chi^2 / (scale + chi^2), the least that a
 /// switch can make of it, over the others.
 double robust_cost(const GraphSolver& solver);
 
-/// The way to the solution (docs/optimiser.md).
+/// The search for the solution (docs/optimiser.md).
 ///
-/// If no link that was on has a large innovation, all that is left to do is to decide anew which agree. Else what was
-/// believed may be wrong: all switches start at 1 again, so that links that were off together can come back together; a
+/// If no edge that was on has a large innovation, all that is left to do is to decide anew which agree. Else what was
+/// believed may be wrong: all switches start at 1 again, so that edges that were off together can come back together; a
 /// solution that costs more than the poses that were there is dropped.
 class Search {
  public:
   Search(GraphSolver& solver, int max_iterations) : solver_(solver), max_iterations_(max_iterations) {}
 
-  /// To the optimum of the switches; if `decide`, links that disagree with it are then left out.
+  /// To the optimum of the switches; if `decide`, edges that disagree with it are then left out.
   void run(bool decide);
 
   int iterations() const { return iterations_; }

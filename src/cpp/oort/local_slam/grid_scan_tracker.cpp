@@ -128,7 +128,7 @@ TrackedScan GridScanTracker::match(const Points& points, const Pose2& expected) 
     best = CeresMatcher(grids_.grid(kRefinementGrid), p.ceres_scan_matcher)
                .match(points, best.pose, expected.translation());
   }
-  // How much hits is always judged on the coarse grid: in a finer one a sparse scan leaves gaps.
+  // The inlier ratio is always judged on the coarse grid: in a finer one a sparse scan leaves gaps.
   score_pose(grids_.grid(kSearchGrid), points, best);
   take(best, tracked);
   tracked.inlier_ratio = best.inlier_ratio;

@@ -9,9 +9,9 @@
 
 namespace oort {
 
-/// Cartographer's way (incremental_graph_builder.cartographer_matcher): a real-time correlative search on a coarse grid
-/// of the latest scans, refined by Ceres on a finer one, and if wanted once more on a still finer one. Odometry says
-/// where to look; how far it may be off is in the matchers' windows and weights, not in its covariance.
+/// As Cartographer does (incremental_graph_builder.cartographer_matcher): a real-time correlative search on a coarse
+/// grid of the latest scans, refined by Ceres on a finer one, and if wanted once more on a still finer one. Odometry
+/// says where to look; how far it may be off is in the matchers' windows and weights, not in its covariance.
 class GridScanTracker : public ScanTracker {
  public:
   explicit GridScanTracker(const CartographerMatcherParameters& parameters);

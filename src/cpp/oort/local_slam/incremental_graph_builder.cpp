@@ -23,7 +23,7 @@ double extent_of(const frsm::Points& points) {
   return std::sqrt(std::max(squares / n - (x * x + y * y) / (n * n), 0.0));
 }
 
-/// Next to nothing is known, yet a link of it is one that submaps may be drawn over (TrajectorySegments).
+/// Next to nothing is known, yet an edge of it is one that submaps may be drawn over (TrajectorySegments).
 Eigen::Matrix3d diffuse_covariance() {
   return LocalSlamTuning::kDiffuseVariance * Eigen::Matrix3d::Identity();
 }

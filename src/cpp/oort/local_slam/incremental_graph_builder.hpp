@@ -13,22 +13,22 @@
 
 namespace oort {
 
-/// What the scan matcher says of a node, seen from the last node of its segment whose match was believed.
+/// What the scan matcher says of a node, seen from the last node of its segment whose match was accepted.
 struct MatchLink {
   Pose2 T_anchor_node;
   Eigen::Matrix3d covariance;              ///< along the axes of the anchor
-  Rejection rejection = Rejection::kNone;  ///< why it is not to be believed
-  /// Whether the match is farther from odometry than odometry errs, so that neither is to be believed. Never with the
+  Rejection rejection = Rejection::kNone;  ///< why it is not accepted
+  /// Whether the match is farther from odometry than odometry errs, so that neither is trusted. Never with the
   /// constant odometry model, nor with a matcher that does not have odometry as its prior, nor of a match that is
   /// rejected for what it is. Of one that is rejected only for how far it is from odometry, odometry's pose counts.
   bool contradicts_odometry = false;
   Pose2 T_anchor_node_weighed;  ///< then: the mean of both by their information; odometry's where the match is free
 };
 
-/// What the chosen matcher's section says of links.
+/// What the chosen matcher's section says of edges.
 struct LinkParameters {
   double scanmatch_cov_scale = 1.0;          ///< factors on standard deviations: of matches,
-  double inflate_scanmatch_cov_scale = 1.0;  ///< of the first link after a pause,
+  double inflate_scanmatch_cov_scale = 1.0;  ///< of the first edge after a pause,
   double resume_scanmatch_cov_scale = 1.0;   ///< and of a session's first
   double heading_error_per_meter = 0.0;      ///< [rad/m]
   double min_inlier_ratio = 0.0;             ///< least of a match that is accepted
@@ -58,9 +58,9 @@ class IncrementalGraphBuilder {
 
   /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor,
   /// and learns from it how good the odometry is.
-  /// The link's covariance is that of the match and of odometry together; `odometry_is_linked`: of the match alone, as
-  /// links by odometry lead from the anchor to the node already and would count twice.
-  /// `doubt`: covariance of what odometry is doubted for on the way; nothing is learned from it then.
+  /// The edge's covariance is that of the match and of odometry together; `odometry_is_linked`: of the match alone, as
+  /// edges by odometry lead from the anchor to the node already and would count twice.
+  /// `doubt`: covariance of what odometry is doubted for over the motion; nothing is learned from it then.
   MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node,
                  bool odometry_is_linked, const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
 

@@ -80,7 +80,8 @@ std::optional<TrajectoryNode> LocalSlam::make_node() {
   return trajectory_.add_node(*last_);
 }
 
-// Odometry's own scales of way and turn are off by little over the length of a scan: the motion is taken as measured.
+// Odometry's own scales of translation and rotation are off by little over the length of a scan: the motion is taken as
+// measured.
 PointCloud LocalSlam::deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const {
   PointCloud cloud = to_point_cloud(scan);
   if (!parameters_.motion_compensation) return cloud;

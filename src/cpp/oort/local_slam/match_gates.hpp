@@ -5,7 +5,7 @@
 
 namespace oort {
 
-/// Why the match of a scan that becomes a node is not to be believed, given the motion by odometry alone from its
+/// Why the match of a scan that becomes a node is rejected, given the motion by odometry alone from its
 /// anchor to it, by the gates of the matcher that `parameters` chooses (match_filtering, or sm_*); kNone when it is.
 Rejection match_rejection(const IncrementalGraphBuilderParameters& parameters, const TrackedScan& node,
                           const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry);

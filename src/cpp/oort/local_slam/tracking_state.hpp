@@ -11,14 +11,14 @@ namespace oort {
 enum class TrackingState {
   kTracking,   ///< the scan was placed by what it shows
   kUncertain,  ///< odometry alone says where it is, or its segment is untied
-  kLost,       ///< it has been odometry alone for long, or neither odometry nor the scans are to be believed
+  kLost,       ///< it has been odometry alone for long, or neither odometry nor the scans can be trusted
 };
 
 /// Follows the tracking state from scan to scan. It counts scans and reads no clock.
 class TrackingMonitor {
  public:
-  /// Nodes from this one on hang loosely on those before: what led from one to the other is not known. `is_guess`: and
-  /// where they were put is little more than a guess. If older ones still hang loosely, all from those on do.
+  /// Nodes from this one on are untied: what led from one to the other is not known. `is_guess`: and
+  /// where they were put is little more than a guess. If older ones are still untied, all from those on are.
   void add_untied(std::uint64_t first_node, bool is_guess);
 
   /// Looks whether a closure that is on ties the newest segment, which begins with the node `segment_begin`, to the

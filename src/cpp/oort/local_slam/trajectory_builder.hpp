@@ -30,8 +30,8 @@ struct LocalScan {
 
 /// How a node's segment is tied to the nodes before.
 enum class Attachment {
-  kTied,    ///< what was driven and seen
-  kUntied,  ///< what led to it is not known
+  kTied,    ///< by odometry and scans
+  kUntied,  ///< the motion to it is not known
   kGuess,   ///< and where it was put is little more than a guess
 };
 
@@ -57,8 +57,8 @@ struct TrajectoryCounts {
   std::uint64_t contradictions = 0;  ///< segments begun as odometry and scans disagreed
 };
 
-/// Follows the sensor along its trajectory: matches scans with the local map, links node to node, and decides when
-/// what was a local map is none any more. It knows the newest node and the last one whose match was believed, nothing
+/// Follows the sensor along its trajectory: matches scans with the local map, links node to node, and decides
+/// when the local map no longer fits. It knows the newest node and the last one whose match was accepted, nothing
 /// of the map's solution.
 ///
 /// A fresh local map begins: with the first scan of a map, of a session, and after a pause; where the tracker itself
@@ -132,7 +132,7 @@ class TrajectoryBuilder {
   LocalMap local_map_ = LocalMap::kKnown;
   std::uint64_t next_id_ = 0;
   Placed newest_;                                                 // the newest node
-  Placed anchor_;                                                 // the newest node whose match was believed
+  Placed anchor_;                                                 // the newest node whose match was accepted
   Pose2 T_odom_sensor_tracked_;                                   // when the matcher was last asked,
   Pose2 T_local_sensor_tracked_;                                  // and what it said
   Eigen::Matrix3d doubt_since_newest_ = Eigen::Matrix3d::Zero();  // of odometry, beyond its model

@@ -11,7 +11,7 @@
 
 namespace oort {
 
-/// What a map says of the space in it: where is free floor, where are walls, and which way these face.
+/// What a map says of the space in it: where is free floor, where are walls, and their normals.
 class KnownSpace {
  public:
   /// Throws InputError if the map is too large for a grid.
@@ -20,7 +20,7 @@ class KnownSpace {
   bool is_wall(const Eigen::Vector2d& p_map) const;
   bool is_free(const Eigen::Vector2d& p_map) const;
 
-  /// Whether a beam from one point to another goes through a wall before the last `margin` [m] of its way.
+  /// Whether a beam from one point to another goes through a wall before the last `margin` [m] of its path.
   bool is_blocked(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double margin) const;
 
   enum class Facing { kUnknown, kSame, kOther };

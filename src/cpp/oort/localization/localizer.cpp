@@ -113,7 +113,7 @@ void Localizer::predict(const Pose2& T_odom_sensor) {
     const Pose2 motion = between(*T_odom_sensor_, T_odom_sensor);
     const bool stands = motion.x == 0.0 && motion.y == 0.0 && motion.theta == 0.0;
     if (!stands) {
-      OdometryModel model = odometry_model_;  // the floors are of a link between nodes, not of every scan
+      OdometryModel model = odometry_model_;  // the floors are of an edge between nodes, not of every scan
       model.translation_floor = model.rotation_floor = 0.0;
       covariance_ = compound_covariance(*T_map_sensor_, covariance_, motion, model.covariance(motion));
       T_map_sensor_ = *T_map_sensor_ * motion;

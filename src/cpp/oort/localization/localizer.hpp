@@ -30,7 +30,7 @@ std::string_view to_string(LocalizationState state);
 
 struct LocalizationStatistics {
   std::uint64_t scans = 0;
-  std::uint64_t matched = 0;   ///< scans whose match was believed
+  std::uint64_t matched = 0;   ///< scans whose match was accepted
   std::uint64_t searches = 0;  ///< of the whole map
   std::uint64_t jumps = 0;     ///< times that a search took the place of a pose which was no longer trusted
   RejectionCounts match_rejections;
@@ -99,12 +99,12 @@ class Localizer {
   std::optional<Pose2> T_map_sensor_;
   std::optional<Pose2> T_odom_sensor_;  // at the latest scan
   bool is_seen_ = false;                // at least one scan fitted there
-  double probation_ = 0.0;  // [m] of way on which scans must still fit before a search's answer is relied on
+  double probation_ = 0.0;  // [m] of travel on which scans must still fit before a search's answer is relied on
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Identity();
   double support_ = 0.0;
   double travel_ = 0.0;  // [m] in all
   std::optional<Rival> rival_;
-  double doubtful_travel_ = 0.0;  // [m] since the last match that was believed
+  double doubtful_travel_ = 0.0;  // [m] since the last match that was accepted
   int doubtful_scans_ = 0;
   LocalizationStatistics statistics_;
 };

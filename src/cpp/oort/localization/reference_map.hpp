@@ -16,8 +16,8 @@ struct Support {
   int inliers = 0;   ///< lie on a surface of the map
   int blocked = 0;   ///< were seen through a known wall
   int in_free = 0;   ///< lie on floor that the map knows to be free
-  int surfaces = 0;  ///< inliers whose way of facing is known, here and on the map
-  int turned = 0;    ///< of these, those that face the other way: the wall was seen from behind
+  int surfaces = 0;  ///< inliers whose normal is known, here and on the map
+  int turned = 0;    ///< of these, those with the opposite normal: the wall was seen from behind
 
   /// Share of the returns that lie on surfaces of the map as they should, less the share that cannot be. At most 1.
   double value() const;

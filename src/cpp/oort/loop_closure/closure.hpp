@@ -21,7 +21,7 @@ struct Closure {
   double firmness = 1.0;  ///< how many times as much as usual it costs to switch it off
 };
 
-/// Makes a closure a switchable link of the map, with its result. Returns its squared Mahalanobis distance from the
+/// Makes a closure a switchable edge of the map, with its result. Returns its squared Mahalanobis distance from the
 /// poses as they are, by its own covariance.
 double add_closure(const Closure& closure, std::uint64_t edge_id, Map& map);
 

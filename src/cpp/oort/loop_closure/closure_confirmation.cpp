@@ -10,7 +10,7 @@
 namespace oort {
 namespace {
 
-/// Whether going from one query to the other by way of the two closures leads to where the drive did.
+/// Whether going from one query to the other by the two closures leads to where the drive did.
 bool agree(const Map& map, const Closure& a, const Closure& b) {
   const auto& nodes = map.graph.nodes;
   const Pose2 by_closures = a.T_from_to * between(nodes[a.to].pose, nodes[b.to].pose) * inverse(b.T_from_to);

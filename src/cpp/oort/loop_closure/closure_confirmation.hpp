@@ -9,7 +9,7 @@
 namespace oort {
 
 /// Holds back closures that would move much until others, found from other places, say the same: one false match is
-/// easily found, several that agree with one another and with the way driven between them are not (pairwise
+/// easily found, several that agree with one another and with the motion between them are not (pairwise
 /// consistency: Mangelson et al. 2018).
 class ClosureConfirmation {
  public:

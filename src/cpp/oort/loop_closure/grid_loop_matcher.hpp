@@ -9,7 +9,7 @@
 
 namespace oort {
 
-/// By Cartographer's way: the scan, thinned, is searched for in a probability grid of the submap by branch and bound,
+/// As Cartographer does: the scan, thinned, is searched for in a probability grid of the submap by branch and bound,
 /// then refined on the same grid (loop_closure_graph_builder.branch_and_bound_matcher).
 class GridLoopMatcher : public LoopMatcher {
  public:

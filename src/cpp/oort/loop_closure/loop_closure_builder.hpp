@@ -23,7 +23,7 @@
 
 namespace oort {
 
-/// How far loops are looked for and what is believed, by the matcher that loop_closure_graph_builder.scanmatcher names.
+/// How far loops are looked for and what is accepted, by the matcher that loop_closure_graph_builder.scanmatcher names.
 struct LoopSearch {
   double window_xy = 0.0;      ///< widest half width [m]
   double window_theta = 0.0;   ///< widest half width [rad]
@@ -38,7 +38,7 @@ struct LoopSearch {
 ///
 /// How far it looks follows from how well the graph knows where the newest node is, as seen from the candidate. Where
 /// that is well, one scan is matched. Where it is not, one scan of a short-range sensor looks like too many places: the
-/// last metres of the way are matched together, and what would move the newest node far waits until it is confirmed.
+/// last metres are matched together, and what would move the newest node far waits until it is confirmed.
 class LoopClosureBuilder {
  public:
   explicit LoopClosureBuilder(const Parameters& parameters);
@@ -55,7 +55,7 @@ class LoopClosureBuilder {
   bool has_work() const { return !waiting_.empty(); }
 
   /// Does the next piece of what was noted: draws some scans of a submap, or makes one attempt. Returns the closures
-  /// that are believed with it.
+  /// that are accepted with it.
   std::vector<Closure> work(const Map& map, const TrajectorySegments& segments, ClosureCounts& counts, ClosureLog& log,
                             WorkMeter* meter = nullptr);
 

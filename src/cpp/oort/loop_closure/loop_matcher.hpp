@@ -28,11 +28,11 @@ struct LoopScale {
   std::size_t rough_points = 100;   ///< that the search over the whole window looks at, evenly chosen
   std::size_t fine_points = 0;      ///< that the search around its result looks at; 0: all
   double max_ambiguity = 1.0;       ///< largest score of the best pose elsewhere, as a share of the best; 1: any
-  double sigma_xy = 0.0;            ///< how far the segments are bent over the nodes that are matched [m]
+  double sigma_xy = 0.0;            ///< how far the trajectory is bent over the nodes that are matched [m]
   double sigma_theta = 0.0;         ///< [rad]
   double reach = 1e3;               ///< returns farther from their sensor are left out [m]
 
-  /// The covariance of how far the segments are bent, in x, y, theta.
+  /// The covariance of how far the trajectory is bent, in x, y, theta.
   Eigen::Matrix3d bend() const { return Eigen::Vector3d(sigma_xy, sigma_xy, sigma_theta).cwiseAbs2().asDiagonal(); }
 };
 
@@ -40,10 +40,10 @@ struct LoopScale {
 class LoopMatcher {
  public:
   struct Found {
-    Pose2 T_candidate_query;     ///< the best there is, believed or not
+    Pose2 T_candidate_query;     ///< the best there is, accepted or not
     Eigen::Matrix3d covariance;  ///< along the axes of the candidate
     double inlier_ratio = 0.0;
-    Rejection rejection = Rejection::kNone;  ///< why it is not to be believed
+    Rejection rejection = Rejection::kNone;  ///< why it is not accepted
   };
 
   virtual ~LoopMatcher() = default;

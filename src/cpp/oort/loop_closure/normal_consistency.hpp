@@ -12,7 +12,7 @@
 
 namespace oort {
 
-/// A piece of a surface and the way it faces: towards the sensor that saw it.
+/// A piece of a surface with its normal, towards the sensor that saw it.
 struct SurfacePoint {
   Eigen::Vector2d position;
   Eigen::Vector2d normal;  ///< of length 1
@@ -22,7 +22,7 @@ struct SurfacePoint {
 /// neighbours are too far off has no known direction and is left out. Points in scan order, in the sensor's frame.
 std::vector<SurfacePoint> surface_points(const frsm::Points& points);
 
-/// Which way the surfaces of a submap face. A thin wall looks the same to a scan matcher from both sides; here its
+/// The normals of a submap's surfaces. A thin wall looks the same to a scan matcher from both sides; here its
 /// sides differ.
 class NormalMap {
  public:

@@ -55,7 +55,7 @@ Rejection rejection_of(const ScanAlignment& alignment, double max_distance) {
   return far ? Rejection::kFar : Rejection::kNone;
 }
 
-/// The links between scans at some poses, and how well the scans agree there.
+/// The edges between scans at some poses, and how well the scans agree there.
 struct ScanLinks {
   std::vector<Link> links;
   ClosureCounts counts;

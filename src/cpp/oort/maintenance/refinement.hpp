@@ -7,7 +7,7 @@
 namespace oort {
 
 /// Moves the nodes of a solved map so that scans that saw the same surfaces agree (docs/refinement.md). Poses change by
-/// what the scans show, within what the links of the graph leave open; links and switches stay as they are. The first
+/// what the scans show, within what the edges of the graph leave open; edges and switches stay as they are. The first
 /// node of each connected part stays where it is. Work is bounded by counts; the same map gives the same bits.
 ///
 /// The map must be one that find_defect() accepts. Returns what was done; a map that the scans would make disagree more

@@ -56,7 +56,7 @@ struct RefinementTuning {
   static constexpr double kClosureShare = 0.1;  ///< of its information
   static constexpr double kMinSwitch = 0.3;     ///< below which it is left out
 
-  /// Squared error at which a link between scans counts half, once all have pulled together.
+  /// Squared error at which an edge between scans counts half, once all have pulled together.
   static constexpr double kRobustSquaredError = 4.0;
 };
 

@@ -9,9 +9,9 @@
 
 namespace oort {
 
-/// Which nodes were tracked in one go. Within a segment the poses in the scan matcher's own frame are trusted to be
+/// The trajectory segments of a map. Within a segment the poses in the scan matcher's own frame are trusted to be
 /// rigid, so submaps are made from them: they do not change when the graph is solved. Nodes that only odometry placed
-/// join no submap. A new segment begins with each session, after each pause, and wherever the link to the node before
+/// join no submap. A new segment begins with each session, after each pause, and wherever the edge to the node before
 /// is very uncertain.
 class TrajectorySegments {
  public:
@@ -19,7 +19,7 @@ class TrajectorySegments {
   /// scan matcher saw it there.
   void add(bool begins_segment, bool matched, const Pose2& T_local_sensor);
 
-  /// Recovers the segments of a map from its links and incremental results.
+  /// Recovers the segments of a map from its edges and incremental results.
   static TrajectorySegments of_map(const Map& map);
 
   std::size_t size() const { return local_poses_.size(); }

@@ -20,7 +20,7 @@ struct PlacedNode {
 enum class Direction { kForward, kBackward };
 
 /// The origin and the nodes next to it in one direction, by the trajectory alone, wherever the graph's solution has
-/// them: at most `count` in all, up to a link that is too uncertain. Goes on where a new local map was begun, and
+/// them: at most `count` in all, up to an edge that is too uncertain. Goes on where a new local map was begun, and
 /// through nodes that only odometry placed: over the few metres that this is meant for odometry is good to centimetres.
 std::vector<PlacedNode> walk_trajectory(const Map& map, const TrajectorySegments& segments, std::uint64_t origin,
                                         Direction direction, std::size_t count);

@@ -115,7 +115,7 @@ bool GlobalSlam::solve_newest(WorkMeter* meter) {
   return 2 * std::count_if(chi2.end() - closures, chi2.end(), disagrees) <= closures;
 }
 
-// Links that an earlier false closure had switched off stay off, as nothing pulls at a switch that is 0. So the whole
+// Edges that an earlier false closure had switched off stay off, as nothing pulls at a switch that is 0. So the whole
 // graph is solved once more with all of them on, and the better of the two solutions counts.
 void GlobalSlam::solve_anew(int max_iterations) {
   const double cost = solve(max_iterations, 0, nullptr).final_cost;

@@ -15,7 +15,7 @@ struct CorrelativeOptions {
 
 /// Scores every pose of a lattice around the guess: cells apart in x and y, angular_step() apart in heading. The best
 /// is that with the greatest mean probability times exp(-(w_t |dt| + w_r |dtheta|)^2), the nearest to the guess among
-/// equal ones (Olson 2009). Accurate to half a cell; meant for short ways between scans.
+/// equal ones (Olson 2009). Accurate to half a cell; meant for short motions between scans.
 class CorrelativeMatcher : public ScanMatcher {
  public:
   /// `grid` must outlive the matcher.

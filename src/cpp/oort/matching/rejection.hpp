@@ -10,7 +10,7 @@
 
 namespace oort {
 
-/// Why a match is not believed. Every verdict on one, of a scan, a closure, a link between scans or a pose on a map, is
+/// Why a match is rejected. Every verdict on one, of a scan, a closure, an edge between scans or a pose on a map, is
 /// one of these. Texts are for people: code compares the values.
 enum class Rejection : std::uint8_t {
   kNone,        ///< accepted
@@ -58,7 +58,7 @@ enum class Rejection : std::uint8_t {
   kSameNode,
   kNoReference,
 
-  // Links between scans in a refinement.
+  // Edges between scans in a refinement.
   kFewSurfaces,
   kFar,
 

@@ -34,8 +34,8 @@ struct MapSearch {
 /// Looks for map b on map a. `guesses` are tried, too: placements of which T_a_b and found_by are set. With
 /// `only_guesses` there is no search without a guess. Work is bounded by counts; deterministic.
 ///
-/// Views of the smaller map, some metres of way each, are looked for on all of the larger one without a guess
-/// (Relocalizer); each answer, believed or not, is a placement of the map. Of those that most others agree with, each
+/// Views of the smaller map, some metres of trajectory each, are looked for on all of the larger one without a guess
+/// (Relocalizer); each answer, accepted or not, is a placement of the map. Of those that most others agree with, each
 /// is weighed: every view is matched near to where it should be then, and either fits, contradicts, or does neither.
 ///
 /// Throws InputError if a map is empty or contradicts itself.

@@ -17,9 +17,10 @@ struct TimedPose {
   Pose2 pose;
 };
 
-/// Odometry whose turns are those of a gyro: each step keeps odometry's way and takes its turn from the integrated yaw
-/// rate, less the gyro's bias, which is learned while odometry says that the base stands. A step that the gyro does not
-/// cover, over which it is dead, or that comes before the bias is known, keeps odometry's turn (docs/motion.md).
+/// Odometry whose turns are those of a gyro: each step keeps odometry's translation and takes its turn from the
+/// integrated yaw rate, less the gyro's bias, which is learned while odometry says that the base stands. A step that
+/// the gyro does not cover, over which it is dead, or that comes before the bias is known, keeps odometry's turn
+/// (docs/motion.md).
 ///
 /// What comes of it depends on the order of messages within each of the two streams, not on how they mingle, as long as
 /// the gyro is no more than a second behind. Messages not newer than the last of their stream are left out, but a rate

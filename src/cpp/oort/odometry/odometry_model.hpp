@@ -8,8 +8,8 @@
 
 namespace oort {
 
-/// How far odometry may be off after a motion: variances grow in proportion to the way and to the turn, so that cutting
-/// a motion into steps does not change the sum (Thrun, Burgard, Fox 2005, section 5.4).
+/// How far odometry may be off after a motion: variances grow in proportion to translation and rotation, so that
+/// cutting a motion into steps does not change the sum (Thrun, Burgard, Fox 2005, section 5.4).
 struct OdometryModel {
   double translation_per_meter = 0.0;   ///< standard deviation of x and y after one metre [m]
   double translation_per_radian = 0.0;  ///< of x and y after turning one radian [m]
@@ -35,7 +35,8 @@ class LearnedOdometry {
   /// Takes a (corrected) motion by odometry and where the match found its end, seen from where odometry did.
   void learn(const Pose2& T_before_after, const Pose2& T_odometry_match);
 
-  /// A measured motion with what odometry is always wrong by taken out: the scales of way and turn that matches found.
+  /// A measured motion with what odometry is always wrong by taken out: the scales of translation and rotation that
+  /// matches found.
   Pose2 corrected(const Pose2& T_before_after) const;
 
   const OdometryModel& model() const { return model_; }

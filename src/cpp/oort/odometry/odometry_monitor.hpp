@@ -18,7 +18,7 @@ struct OdometryFault {
   };
   Kind kind = Kind::kJump;
   double time = 0.0;      ///< [s]
-  double distance = 0.0;  ///< between what it said and what was believed [m]
+  double distance = 0.0;  ///< between what it said and what was accepted [m]
   double angle = 0.0;     ///< the same [rad]
 };
 
@@ -65,10 +65,10 @@ class OdometryMonitor {
 
   std::optional<double> last_time_;
   std::deque<double> intervals_;  // the latest [s]
-  Motion judged_;                 // by odometry, not yet believed
+  Motion judged_;                 // by odometry, not yet accepted
   bool judged_doubted_ = false;
   std::optional<Motion> believed_;  // the last motion
-  Pose2 missed_;                    // what was believed while odometry was frozen
+  Pose2 missed_;                    // what was accepted while odometry was frozen
   bool is_frozen_ = false;
   std::uint64_t fault_count_ = 0;
   std::vector<OdometryFault> faults_;

@@ -58,7 +58,7 @@ struct MatchFilteringParameters {
   double min_accept_score;
 };
 
-/// How far odometry may be off after a motion; variances grow in proportion to way and turn.
+/// How far odometry may be off after a motion; variances grow in proportion to translation and rotation.
 struct OdometryNoiseParameters {
   double translation_per_meter;
   double translation_per_radian;
@@ -169,7 +169,7 @@ struct CandidateSearchParameters {
   int candidate_stride;
 };
 
-/// Decides whether a loop closure's match is believed.
+/// Decides whether a loop closure's match is accepted.
 struct MatchFilterParameters {
   double close_node_hitpct_threshold;
   double close_node_max_dist;

@@ -12,8 +12,9 @@
 namespace oort {
 
 struct RenderedMap {
-  OccupancyGrid map;          ///< as the clouds say, with the robot's way cleared
-  OccupancyGrid map_cleaned;  ///< the same without speckle noise, for path planning; the robot's way is free here too
+  OccupancyGrid map;  ///< as the clouds say, with the robot's trajectory cleared
+  OccupancyGrid
+      map_cleaned;  ///< the same without speckle noise, for path planning; the robot's trajectory is free here too
 };
 
 /// Draws the map that the clouds show from their nodes' poses.

@@ -9,7 +9,7 @@ namespace oort {
 /// The map without speckle noise: small unknown spots within free space become free, stray occupied cells go.
 ///
 /// Median: median.iter passes of a median filter over free and unknown cells. A plain median would eat walls, which
-/// short-range sensors draw one cell thick. So occupied cells take no part in it: those that hang together
+/// short-range sensors draw one cell thick. So occupied cells take no part in it: connected ones
 /// (8-connected) in groups of at least median.kernel_size cells stay, others become what is around them, and no cell
 /// becomes occupied.
 ///

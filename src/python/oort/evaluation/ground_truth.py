@@ -52,7 +52,7 @@ def autogenerate_relations(
 ) -> GroundTruth:
     """Relations from the closures of a solved map. `sensor_on_base` is T_base_sensor, which a map does not hold.
 
-    The way from one chain of a map to the next is not driven and does not count as distance. Raises InputError if the
+    What lies between two segments of a map is not driven and does not count as distance. Raises InputError if the
     map has no closure, or none is within the limits.
     """
     limits = limits or RelationLimits()
@@ -96,5 +96,5 @@ def _driven(map_: Map) -> NDArray[np.float64]:
     """(N,) the way driven up to each node [m]."""
     steps = np.hypot(*np.diff(map_.node_poses[:, :2], axis=0, prepend=map_.node_poses[:1, :2]).T)
     results = map_.incremental_results
-    steps[results["id"][results["id"] == results["target"]].astype(np.int64)] = 0.0  # the first of a chain
+    steps[results["id"][results["id"] == results["target"]].astype(np.int64)] = 0.0  # the first of a segment
     return np.asarray(np.cumsum(steps), dtype=np.float64)

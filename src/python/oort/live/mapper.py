@@ -156,7 +156,7 @@ class LiveMapper:
         return bool(self._call("map/notify_docked"))
 
     def pause(self) -> None:
-        """Takes no scans until resume_from_paused(): the robot is carried."""
+        """Takes no scans until resume_from_paused(): the robot is moved."""
         self._call("map/pause")
 
     def resume_from_paused(self) -> None:

@@ -42,7 +42,7 @@ class TrajectoryRecorder:
         self._made_node.append(result is not None and result.outcome == "node")
 
     def forget_nodes(self) -> None:
-        """The map was dropped or replaced: scans so far are carried by odometry from what comes."""
+        """The map was dropped or replaced: scans so far are placed by odometry from what comes."""
         self._nodes = [_NO_NODE] * len(self._nodes)
         self._made_node = [False] * len(self._made_node)
 
@@ -51,7 +51,7 @@ class TrajectoryRecorder:
 
         ``first_node`` is the id that the drive's first node has there, if its map was merged into another.
 
-        A scan between two nodes of a chain is carried by both: how far the solution moved the next node from where the
+        A scan between two nodes of a segment moves with both: how far the solution moved the next node from where the
         scan matcher had seen it is given to the scans in proportion to their place between the two. Scans that no node
         carries follow odometry from the scan before (the first ones: back from the first scan that has a node).
         """
@@ -67,7 +67,7 @@ class TrajectoryRecorder:
     def _progress(self, nodes: NDArray[np.int64]) -> NDArray[np.float64]:
         """How far each scan is on the way from the scan of its node to that of the next, in [0, 1]."""
         progress = np.zeros(len(nodes))
-        first = np.flatnonzero((np.diff(nodes, prepend=_NO_NODE) != 0) & (nodes != _NO_NODE))  # carried by each node
+        first = np.flatnonzero((np.diff(nodes, prepend=_NO_NODE) != 0) & (nodes != _NO_NODE))  # moves with each node
         # A node that a call made is the scan before the first that it carries.
         made = first - ~np.array(self._made_node, dtype=np.bool_)[first]
         for (before, begin), (after, end) in itertools.pairwise(zip(made, first, strict=True)):

@@ -5,11 +5,11 @@
 
 #include "oort/graph/internal/residuals.hpp"
 
-/// The links of a graph as cost functions for Ceres, of blocks x, y, theta, with analytic Jacobians. Internal: needs
+/// The edges of a graph as cost functions for Ceres, of blocks x, y, theta, with analytic Jacobians. Internal: needs
 /// Ceres' headers.
 namespace oort {
 
-/// W e of a link, with e = constraint_error(pose_i, pose_j, T_i_j).
+/// W e of an edge, with e = constraint_error(pose_i, pose_j, T_i_j).
 class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
  public:
   RelativePoseCost(const Pose2& T_i_j, const Eigen::Matrix3d& W) : T_i_j_(T_i_j), W_(W) {}
@@ -22,7 +22,7 @@ class RelativePoseCost : public ceres::SizedCostFunction<3, 3, 3> {
 };
 
 /// W e of a landmark's observation, with e = constraint_error(pose, landmark, T_sensor_landmark) at the pose a fraction
-/// of the way from the first node to the second. Blocks: first node, second node, landmark.
+/// of the motion from the first node to the second. Blocks: first node, second node, landmark.
 class LandmarkCost : public ceres::SizedCostFunction<3, 3, 3, 3> {
  public:
   LandmarkCost(double fraction, const Pose2& T_sensor_landmark, const Eigen::Matrix3d& W)

@@ -16,9 +16,9 @@ struct Joint {
 };
 
 /// Closes loops from the nodes from `begin` on to those before it, as if the former were driven only now: from the
-/// joint outwards along their segments, the graph solved whenever a closure surprises. Adds the closures to the map,
-/// and a wide link at the joint; the map's poses are then those of an intermediate solution. Returns what became of the
-/// attempts.
+/// joint outwards along their segments, the graph solved after each closure with a large innovation. Adds the closures
+/// to the map, and a wide edge at the joint; the map's poses are then those of an intermediate solution. Returns what
+/// became of the attempts.
 ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, const Parameters& parameters);
 
 }  // namespace oort

@@ -11,7 +11,8 @@
 
 namespace oort {
 
-/// What was seen around one place of a map: the scans of some metres of way, joined as the scan matcher joined them.
+/// What was seen around one place of a map: the scans of some metres of trajectory, joined as the scan matcher joined
+/// them.
 struct MapView {
   std::uint64_t node = 0;         ///< the place
   Pose2 T_map_sensor;             ///< of the last of the scans
