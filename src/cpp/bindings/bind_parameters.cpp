@@ -14,10 +14,8 @@ namespace {
 
 const char* status_name(ParameterStatus status) {
   switch (status) {
-    case ParameterStatus::kDocumentedUnused:
-      return "documented_unused";
-    case ParameterStatus::kLater:
-      return "later";
+    case ParameterStatus::kNoEffect:
+      return "no_effect";
     default:
       return "used";
   }

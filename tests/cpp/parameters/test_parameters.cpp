@@ -84,11 +84,11 @@ TEST(ParameterTable, EachDifferenceHasAReasonAndOnlyThose) {
 
 TEST(ParameterTable, StatusFollowsTheSection) {
   EXPECT_EQ(entry_of("incremental_graph_builder.frsm_matcher.debug_viewer.viewer_scale").status,
-            ParameterStatus::kLater);
-  EXPECT_EQ(entry_of("loop_closure_graph_builder.branch_and_bound_matcher.debug").status, ParameterStatus::kLater);
+            ParameterStatus::kNoEffect);
+  EXPECT_EQ(entry_of("loop_closure_graph_builder.branch_and_bound_matcher.debug").status, ParameterStatus::kNoEffect);
   EXPECT_EQ(entry_of("loop_closure_graph_builder.branch_and_bound_matcher.min_score").status, ParameterStatus::kUsed);
   EXPECT_EQ(entry_of("loop_closure_graph_builder.candidate_search.max_dist_allowed_threshold").status,
-            ParameterStatus::kDocumentedUnused);
+            ParameterStatus::kNoEffect);
   EXPECT_EQ(entry_of("linear_update").status, ParameterStatus::kUsed);
 }
 

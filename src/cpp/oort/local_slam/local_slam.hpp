@@ -55,7 +55,6 @@ class LocalSlam {
   bool has_pose() const { return last_.has_value() && trajectory_.is_going_on(); }
   /// The latest scan. There must be one.
   const LocalScan& last_scan() const { return *last_; }
-  bool has_scan() const { return last_.has_value(); }
   /// Where the latest scan was taken, as odometry has it.
   Pose2 T_odom_sensor_measured() const { return last_->T_odom_base_measured * T_base_sensor_; }
   std::uint64_t newest_node() const { return trajectory_.newest_node(); }

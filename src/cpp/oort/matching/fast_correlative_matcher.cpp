@@ -140,27 +140,13 @@ FastCorrelativeMatcher::FastCorrelativeMatcher(std::shared_ptr<const BoundGrids>
 
 ScanMatch FastCorrelativeMatcher::match(const Points& points, const Pose2& guess) const {
   check_guess(guess);
-  return match(points, guess, options_.linear_search_window, options_.angular_search_window);
-}
-
-ScanMatch FastCorrelativeMatcher::match_anywhere(const Points& points) const {
-  const GridLimits& limits = grids_->grid().limits();
-  double reach = 0.0;
-  for (const Eigen::Vector2d& point : points) reach = std::max(reach, point.norm());
-  const double across = limits.resolution * std::max(limits.width, limits.height);
-  const Pose2 middle{limits.origin_x + 0.5 * limits.resolution * limits.width,
-                     limits.origin_y + 0.5 * limits.resolution * limits.height, 0.0};
-  return match(points, middle, across + reach, kPi);
-}
-
-ScanMatch FastCorrelativeMatcher::match(const Points& points, const Pose2& guess, double linear_window,
-                                        double angular_window) const {
   ScanMatch match;
   match.pose = guess;
   if (points.empty()) return match;
   const GridLimits& limits = grids_->grid().limits();
   const double turn = angular_step(points, limits.resolution);
-  const std::vector<Heading> headings = headings_of(points, guess, limits, turn, linear_window, angular_window);
+  const std::vector<Heading> headings =
+      headings_of(points, guess, limits, turn, options_.linear_search_window, options_.angular_search_window);
   Search search{*grids_, headings, {0, 0, 0, options_.min_score}};
   const std::vector<Box> roots = search.roots();
   search.branch(roots, roots.size(), grids_->depth() - 1);

@@ -24,13 +24,9 @@ class FastCorrelativeMatcher : public ScanMatcher {
 
   ScanMatch match(const Points& points, const Pose2& guess) const override;
 
-  /// Searches all poses that see some of the grid, at any heading; without a guess.
-  ScanMatch match_anywhere(const Points& points) const;
-
  private:
   struct Search;
 
-  ScanMatch match(const Points& points, const Pose2& guess, double linear_window, double angular_window) const;
   void describe(const Points& points, double turn, ScanMatch& match) const;
 
   std::shared_ptr<const BoundGrids> grids_;

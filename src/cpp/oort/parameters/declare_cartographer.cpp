@@ -99,8 +99,8 @@ void declare_lenient_match_filter(const Section& v, MatchFilterParameters& p) {
 }  // namespace
 
 void declare_cartographer_matcher(const Section& v, CartographerMatcherParameters& p) {
-  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").later();
-  v(p.debug_viewer_scale, "debug_viewer_scale", {4, "", {1, 100}}, "Screen pixels per cell of the viewer.").later();
+  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").no_effect();
+  v(p.debug_viewer_scale, "debug_viewer_scale", {4, "", {1, 100}}, "Screen pixels per cell of the viewer.").no_effect();
   v(p.history_length, "history_length", {60, "scans", {2, 10000}},
     "Latest scans that make the matcher's local map: the map holds between half as many and as many.")
       .documented(30, "With insert_free_space: 150 scans of Intel without loops drift by 0.016 m instead of 0.041 m.");
@@ -136,12 +136,12 @@ void declare_cartographer_matcher(const Section& v, CartographerMatcherParameter
 }
 
 void declare_branch_and_bound_matcher(const Section& v, BranchAndBoundMatcherParameters& p) {
-  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").later();
+  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").no_effect();
   v(p.debug_draw_original_cloud, "debug_draw_original_cloud", false,
     "Whether the viewer draws the cloud unmatched too.")
-      .later();
+      .no_effect();
   v(p.debug_only_show_matched, "debug_only_show_matched", true, "Whether the viewer shows accepted matches only.")
-      .later();
+      .no_effect();
   v(p.submap_min_neighborhood_size, "submap_min_neighborhood_size", {3, "nodes", {1, 10000}},
     "Candidates with a smaller submap are rejected.");
   v(p.global_localization_min_score, "global_localization_min_score", {0.21, "fraction", {0.0, 1.0}},

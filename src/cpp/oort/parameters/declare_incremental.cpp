@@ -83,7 +83,7 @@ void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {
 }
 
 void declare_match_filtering(const Section& v, MatchFilteringParameters& p) {
-  v(p.dist_accept_threshold, "dist_accept_threshold", {0.06, "m", {0.0, 100.0}}, "No effect.").unused();
+  v(p.dist_accept_threshold, "dist_accept_threshold", {0.06, "m", {0.0, 100.0}}, "Documented as unused.").no_effect();
   v(p.x_min_accept, "x_min_accept", {-1.0, "m", {-100.0, 100.0}},
     "Least forward difference, match minus odometry, that is accepted.")
       .documented(
@@ -101,8 +101,8 @@ void declare_match_filtering(const Section& v, MatchFilteringParameters& p) {
 }
 
 void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {
-  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").later();
-  declare_debug_viewer(v.section("debug_viewer", ParameterStatus::kLater), p.debug_viewer);
+  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").no_effect();
+  declare_debug_viewer(v.section("debug_viewer", ParameterStatus::kNoEffect), p.debug_viewer);
   declare_search(v, p);
   v(p.scanmatch_cov_scale, "scanmatch_cov_scale", {0.35, "", {0.001, 1e6}},
     "Factor on the standard deviations of the match's covariance.")
@@ -114,9 +114,11 @@ void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {
     "Takes the place of scanmatch_cov_scale for the first link after resume_from_paused.");
   v(p.resume_scanmatch_cov_scale, "resume_scanmatch_cov_scale", {50.0, "", {0.001, 1e6}},
     "Takes the place of scanmatch_cov_scale for the first link of a new session on an old map.");
-  v(p.sm_dist_accept_threshold, "sm_dist_accept_threshold", {0.06, "m", {0.0, 100.0}}, "No effect.").unused();
-  v(p.sm_angle_accept_threshold, "sm_angle_accept_threshold", {0.07, "rad", {0.0, 3.15}}, "No effect.").unused();
-  v(p.min_sm_accept_score, "min_sm_accept_score", {0.45, "fraction", {0.0, 1.0}}, "No effect.").unused();
+  v(p.sm_dist_accept_threshold, "sm_dist_accept_threshold", {0.06, "m", {0.0, 100.0}}, "Documented as unused.")
+      .no_effect();
+  v(p.sm_angle_accept_threshold, "sm_angle_accept_threshold", {0.07, "rad", {0.0, 3.15}}, "Documented as unused.")
+      .no_effect();
+  v(p.min_sm_accept_score, "min_sm_accept_score", {0.45, "fraction", {0.0, 1.0}}, "Documented as unused.").no_effect();
   declare_match_filtering(v.section("match_filtering"), p.match_filtering);
 }
 

@@ -18,7 +18,8 @@ void declare_candidate_search(const Section& v, CandidateSearchParameters& p) {
     "Least difference of a candidate's id to the query's.");
   v(p.closest_allowed_id_threshold_small, "closest_allowed_id_threshold_small", {5, "nodes", {1, 1000000}},
     "The same, for a second search if the first finds no candidate.");
-  v(p.max_dist_allowed_threshold, "max_dist_allowed_threshold", {4.0, "m", {0.0, 1000.0}}, "No effect.").unused();
+  v(p.max_dist_allowed_threshold, "max_dist_allowed_threshold", {4.0, "m", {0.0, 1000.0}}, "Documented as unused.")
+      .no_effect();
   v(p.max_candidate_distance, "max_candidate_distance", {4.0, "m", {0.0, 1000.0}},
     "Nodes farther away are no candidates; 0: no limit.")
       .own(0.0,

@@ -22,8 +22,7 @@ struct Range {
 
 enum class ParameterStatus {
   kUsed,
-  kDocumentedUnused,  ///< accepted, without effect, as documented
-  kLater              ///< accepted, without effect yet: belongs to a part that this version does not have
+  kNoEffect  ///< kept for the original's files: checked, without effect
 };
 
 /// One row of the table.

@@ -30,11 +30,6 @@ _CARTOGRAPHER: dict[str, bool | int | float | str] = {
 }
 """What params/cartographer.json chooses."""
 
-_EFFECTLESS = {
-    "documented_unused": "documented as unused",
-    "later": "belongs to a part that this version does not have",
-}
-
 
 def files() -> dict[str, str]:
     """The content of each file by its path in the project."""
@@ -79,7 +74,9 @@ def documentation(table: Iterable[ParameterEntry]) -> str:
     for section, members in sections.items():
         parts.append(f"\n## {section or 'At the top'}\n\n")
         parts.extend(_key_table(members))
-    parts.append("\n## Keys without effect\n\nRead and checked, so that a documented file can be used as it is.\n\n")
+    parts.append("\n## Keys without effect\n\n")
+    parts.append("Kept for files of the original Oort: read and checked, so that they can be used as they are.\n")
+    parts.append("The viewers that some are for are not there.\n\n")
     parts.extend(_effectless_table(entry for entry in entries if entry.status != "used"))
     parts.append("\n## Where the defaults differ from the documented values\n\n")
     parts.extend(_difference_table(entry for entry in entries if entry.default != entry.documented))
@@ -94,10 +91,9 @@ def _key_table(entries: Iterable[ParameterEntry]) -> Iterator[str]:
 
 
 def _effectless_table(entries: Iterable[ParameterEntry]) -> Iterator[str]:
-    yield _row("key", "default", "unit", "range", "meaning", "why") + _row(*["---"] * 6)
+    yield _row("key", "default", "unit", "range", "meaning") + _row(*["---"] * 5)
     for entry in entries:
-        why = _EFFECTLESS[entry.status]
-        yield _row(f"`{entry.path}`", _code(entry.default), entry.unit, _range(entry), entry.meaning, why)
+        yield _row(f"`{entry.path}`", _code(entry.default), entry.unit, _range(entry), entry.meaning)
 
 
 def _difference_table(entries: Iterable[ParameterEntry]) -> Iterator[str]:

@@ -75,13 +75,8 @@ DeclaredParameter& DeclaredParameter::own(const ParameterValue& value, const cha
   return documented(value, reason);
 }
 
-DeclaredParameter& DeclaredParameter::unused() {
-  entry.status = ParameterStatus::kDocumentedUnused;
-  return *this;
-}
-
-DeclaredParameter& DeclaredParameter::later() {
-  entry.status = ParameterStatus::kLater;
+DeclaredParameter& DeclaredParameter::no_effect() {
+  entry.status = ParameterStatus::kNoEffect;
   return *this;
 }
 

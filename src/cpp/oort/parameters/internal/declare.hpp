@@ -39,8 +39,7 @@ struct DeclaredParameter {
   DeclaredParameter& documented(const ParameterValue& value, const char* reason);
   /// Not a documented key; `value` gives the documented behaviour. The reason is for a default that differs from it.
   DeclaredParameter& own(const ParameterValue& value, const char* reason = "");
-  DeclaredParameter& unused();  ///< documented as unused
-  DeclaredParameter& later();   ///< of a part that this version does not have
+  DeclaredParameter& no_effect();  ///< kept for the original's files
 
   /// Checks and stores. Throws ParameterError.
   void set(const ParameterValue& value);
