@@ -27,7 +27,7 @@ if [ $ros = ON ]; then
   done
   packages+=(python3-genpy)
 fi
-[ $test = ON ] && packages+=(libgtest-dev clang-format-14 clang-tidy-14)
+[ $test = ON ] && packages+=(libgtest-dev clang-format-14 clang-tidy-14 chromium)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")

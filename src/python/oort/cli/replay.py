@@ -56,6 +56,8 @@ def replay_to_folder(
         print(f"wrote {folder}: {' '.join(name for name in results.written if name != f'the map {map_path}')}")
     if f"the map {map_path}" in results.written and not options.quiet:
         print(f"map: {map_path}")
+    if "report.html" in results.written and not options.quiet:
+        print(f"open {folder / 'report.html'}")
     if results.failed:
         raise OortError(f"{'; '.join(results.failed)}. Written all the same: {', '.join(results.written) or 'nothing'}")
 

@@ -17,6 +17,7 @@ from oort.offline.results import Drive
 from oort.offline.schedule import make_schedule
 from oort.offline.trajectory import TrajectoryRecorder
 from oort.recording import Pose, Recording, Scan
+from oort.report.scan_log import ScanLog
 from oort.report.stopwatch import Stopwatch
 from oort.session import Session
 
@@ -69,8 +70,7 @@ def replay(
     session = Session(parameters, recording.sensor_on_base, naming=service, keep_attempts=MOST)
     recorder = TrajectoryRecorder(recording.sensor_on_base)
     schedule = make_schedule(options.events, _Caller(session, recorder))
-    times: list[float] = []
-    scan_inlier_ratios: list[float] = []
+    log = ScanLog()
     if options.resume is not None:
         session.load(options.resume[0], ignore_checksum=options.ignore_checksum)
         session.resume("", options.resume[1])
@@ -85,13 +85,13 @@ def replay(
             waited = session.mapper.work_seconds["waiting"] - waited
             watch.scan_seconds.append(time.perf_counter() - started - waited)
             watch.waited_seconds.append(waited)
-            if result is not None and result.was_tracked:
-                scan_inlier_ratios.append(result.inlier_ratio)
+            log.add(scan.time, result, watch.scan_seconds[-1], waited)
+        else:
+            log.add(scan.time, None)
         recorder.add(scan.stamp, (mapped or scan).odometry, result)
-        times.append(scan.time)
-    if not times:
+    if not log.times:
         raise InputError(f"{recording.name}: no scan to map")
-    schedule.finish(math.inf if options.until is None else times[0] + options.until)
+    schedule.finish(math.inf if options.until is None else log.times[0] + options.until)
     session.stop()
     if session.mapper.num_nodes == 0:
         raise InputError(
@@ -104,9 +104,9 @@ def replay(
         session,
         recorder,
         watch,
-        max(times) - min(times),
+        max(log.times) - min(log.times),
         options.keep_attempts,
-        scan_inlier_ratios,
+        log,
     )
 
 

@@ -4,7 +4,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,10 @@ from oort.offline.drawing import draw_map
 from oort.offline.outputs import Outputs
 from oort.offline.trajectory import TrajectoryRecorder
 from oort.recording import Recording
+from oort.report.page import make_report_page
 from oort.report.replay_report import make_report
+from oort.report.run_page import run_page_data
+from oort.report.scan_log import ScanLog
 from oort.report.stopwatch import Stopwatch
 from oort.session import Session
 
@@ -42,8 +45,8 @@ class Drive:
     recorded_seconds: float
     keep_attempts: bool = False
     """whether to tell of each attempt to close a loop"""
-    scan_inlier_ratios: Sequence[float] = ()
-    """inlier ratios of the scans that were matched"""
+    log: ScanLog = field(default_factory=ScanLog)
+    """what became of each scan"""
 
     @property
     def map(self) -> Map:
@@ -85,6 +88,7 @@ def write_results(drive: Drive, out: Path, map_path: str) -> Results:
     report = _report(drive, map_, grid, histograms, [*notes, *outputs.failed])
     text = json.dumps(report, indent=2) + "\n"
     outputs.write("report.json", lambda: write_atomically(out / "report.json", text.encode()))
+    outputs.write("report.html", lambda: _write_page(out / "report.html", drive, report, map_, grid, base_poses))
     return Results(report, outputs.written, outputs.failed)
 
 
@@ -115,7 +119,7 @@ def _write_pictures(
 def _histograms(drive: Drive, map_: Map) -> dict[str, Any]:
     attempts = drive.session.mapper.closure_attempts
     rejected = [hits for _, _, rejection, _, hits in attempts if rejection is not None and hits > 0.0]
-    return make_histograms(map_, drive.scan_inlier_ratios, rejected)
+    return make_histograms(map_, drive.log.matched_inlier_ratios.tolist(), rejected)
 
 
 def _report(
@@ -148,6 +152,19 @@ def _write_attempts(out: Path, mapper: Mapper, map_: Map, grid: OccupancyGrid) -
         ends.setdefault(attempt.verdict, []).append(positions[[attempt.query, attempt.candidate]])
     origin = (*grid.origin, 0.0)
     write_closures_picture(out / "closures.png", grid.cells, grid.resolution, origin, ends)
+
+
+def _write_page(
+    path: Path,
+    drive: Drive,
+    report: dict[str, Any],
+    map_: Map,
+    grid: OccupancyGrid | None,
+    base_poses: NDArray[np.float64],
+) -> None:
+    attempts = judge_attempts(drive.session.mapper.closure_attempts, map_)
+    data = run_page_data(report, drive.parameters, map_, grid, attempts, drive.log, base_poses)
+    write_atomically(path, make_report_page(f"Oort: {drive.recording.name}", data))
 
 
 def _names(drive: Drive) -> list[tuple[str, str]]:

@@ -37,9 +37,16 @@ def make_report(
 
 def format_table(report: Mapping[str, Any]) -> str:
     """The figures as aligned lines of text."""
+    rows = table_rows(report)
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def table_rows(report: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """The figures that people look at, each with its name."""
     timings = report["timings"]
     per_scan = timings["ms_per_scan"]
-    rows = [
+    return [
         ("scans", f"{report['scans']} ({report['scans_matched']} matched, {report['scans_too_small']} too small)"),
         (
             "nodes",
@@ -59,8 +66,6 @@ def format_table(report: Mapping[str, Any]) -> str:
         ("CPU seconds", f"{timings['cpu_seconds']:.2f}{_work(timings['cpu_seconds_by_work'])}"),
         ("peak memory", f"{timings['peak_memory_mb']:.0f} MB"),
     ]
-    width = max(len(name) for name, _ in rows)
-    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
 
 
 def _closures(counts: Mapping[str, Any]) -> str:

@@ -1,0 +1,27 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``oort compare A B``: lays two replays side by side and over each other, in one page."""
+
+import argparse
+from collections.abc import Sequence
+
+from oort.cli.tool import run_tool
+from oort.offline.compare import compare
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort compare",
+        description="Lays two replays side by side and over each other: maps, figures, parameters that differ, and how "
+        "far apart they have the robot. Example: oort compare oort-out/before oort-out/after",
+    )
+    parser.add_argument("a", metavar="A", help="the folder of a replay, or its report.html")
+    parser.add_argument("b", metavar="B", help="another one")
+    parser.add_argument("--out", metavar="FILE", default="compare.html", help="the page (default: compare.html)")
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
+    args = _parser().parse_args(argv)
+    return run_tool("oort compare", lambda: print(f"open {compare(args.a, args.b, args.out)}"))

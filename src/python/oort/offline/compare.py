@@ -1,0 +1,30 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Lays two runs side by side."""
+
+from pathlib import Path
+
+from oort.export.files import write_atomically
+from oort.report.compare_page import make_compare_page
+from oort.report.page import read_page_data
+
+_REPORT = "report.html"
+
+
+def compare(a: str, b: str, out: str) -> str:
+    """Writes a page that lays two replays side by side and over each other; returns its path.
+
+    ``a`` and ``b`` are folders of replays or their report.html. Raises InputError for anything else, OortError if the
+    page cannot be written.
+    """
+    paths = [path / _REPORT if path.is_dir() else path for path in (Path(a), Path(b))]
+    data_a, data_b = (read_page_data(path) for path in paths)
+    names = [_name(path) for path in paths]
+    if names[0] == names[1]:
+        names = [str(path) for path in paths]
+    write_atomically(Path(out), make_compare_page(data_a, data_b, (names[0], names[1])))
+    return out
+
+
+def _name(path: Path) -> str:
+    return path.absolute().parent.name if path.name == _REPORT else path.stem

@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the page shows of a map, as plain data: nodes, edges, closures, scans, places."""
+
+import base64
+import io
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from oort._core import Map, OccupancyGrid
+from oort.evaluation.attempts import Attempt
+from oort.export.map_server import grey_picture
+from oort.poses import between, wrap_angle
+from oort.report.arrays import pack
+
+MOST_REJECTED = 3000
+"""rejected attempts that the page shows: those with the best inlier ratios"""
+
+_STEP = 0.005  # [m] of the points of scans
+_MOST_POINTS = 1_500_000  # of all scans together: some 6 MB
+_CHAIN_KINDS = ("laser", "odometry")
+_ON = 0.5  # a closure whose switch is below is off: closer to 0, off, than to 1
+
+
+def grid_layer(grid: OccupancyGrid) -> dict[str, Any]:
+    """The map as a PNG, with its place."""
+    buffer = io.BytesIO()
+    Image.fromarray(grey_picture(grid.cells)).save(buffer, format="PNG", optimize=True)
+    return {
+        "png": base64.b64encode(buffer.getvalue()).decode("ascii"),
+        "resolution": grid.resolution,
+        "origin": list(grid.origin),
+        "size": [grid.width, grid.height],
+    }
+
+
+def node_layer(map_: Map) -> dict[str, Any]:
+    """Poses of the nodes and their scans: points in steps of ``step`` metres in the frames of the sensor."""
+    points, offsets = _scans(map_)
+    return {
+        "poses": pack(map_.node_poses, "f4"),
+        "points": pack(np.round(points / _STEP), "i2"),
+        "offsets": pack(offsets, "i4"),
+        "step": _STEP,
+    }
+
+
+def edge_layer(map_: Map) -> dict[str, Any]:
+    """The chain's edges with the deviation of their positions [m]."""
+    edges = map_.edges
+    covariances = edges["covariance"]
+    sigma = np.sqrt(np.maximum(covariances[:, 0, 0] + covariances[:, 1, 1], 0.0)) if len(edges["i"]) else np.zeros(0)
+    return {
+        "ends": pack(np.stack([edges["i"], edges["j"]], axis=1), "i4"),
+        "sigma": pack(sigma, "f4"),
+        "kind": pack(edges["type"], "u1"),
+        "kinds": list(_CHAIN_KINDS),
+    }
+
+
+def closure_layer(map_: Map, attempts: Sequence[Attempt]) -> dict[str, Any]:
+    """Every closure of the map, and the most convincing of the attempts that were rejected.
+
+    ``from`` is the node in whose frame ``pose`` has the node ``to``; ``moved`` is how far [m] and by what angle [rad]
+    the solution has it elsewhere.
+    """
+    edges = map_.switchable_edges
+    count = len(edges["i"])
+    known = {(a.query, a.candidate): a.inlier_ratio for a in attempts if a.switch is not None}
+    ends = np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64).reshape(-1, 2)
+    ratios = [known.get((i, j), known.get((j, i), np.nan)) for i, j in ends.tolist()]
+    rejected = [a for a in attempts if a.switch is None]
+    shown = sorted(rejected, key=lambda a: -a.inlier_ratio)[:MOST_REJECTED]
+    verdicts = ["accepted", "undone", *sorted({a.verdict for a in shown})]
+    on = edges["switch"] >= _ON
+    codes = [*np.where(on, 0, 1).tolist(), *(verdicts.index(a.verdict) for a in shown)]
+    base = [*ends[:, 0].tolist(), *(a.candidate for a in shown)]
+    moving = [*ends[:, 1].tolist(), *(a.query for a in shown)]
+    poses = np.concatenate(
+        [edges["pose"].reshape(-1, 3), np.array([a.T_candidate_query for a in shown]).reshape(-1, 3)]
+    )
+    return {
+        "ends": pack(np.stack([base, moving], axis=1).reshape(-1, 2), "i4"),
+        "pose": pack(poses, "f4"),
+        "moved": pack(_moved(map_, np.array(base, dtype=np.int64), np.array(moving, dtype=np.int64), poses), "f4"),
+        "verdict": pack(codes, "u1"),
+        "verdicts": verdicts,
+        "inlier_ratio": pack([*ratios, *(a.inlier_ratio for a in shown)], "f4"),
+        "switch": pack([*edges["switch"].tolist(), *[np.nan] * len(shown)], "f4"),
+        "in_map": count,
+        "rejected": len(rejected),
+    }
+
+
+def place_layer(map_: Map) -> list[dict[str, Any]]:
+    """Named places, docks among them."""
+    found = ((space, id_, map_.locate(space, id_)) for space, id_, *_ in map_.locations)
+    return [{"space": space, "id": id_, "pose": list(pose)} for space, id_, pose in found if pose is not None]
+
+
+def _moved(
+    map_: Map, base: NDArray[np.int64], moving: NDArray[np.int64], poses: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    if not len(base):
+        return np.zeros((0, 2))
+    solved = between(map_.node_poses[base], map_.node_poses[moving])
+    distance = np.linalg.norm(solved[:, :2] - poses[:, :2], axis=1)
+    return np.stack([distance, np.abs(wrap_angle(solved[:, 2] - poses[:, 2]))], axis=1)
+
+
+def _scans(map_: Map) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Returns of all nodes, (m, 2), and where each node's begin (and the last one's end)."""
+    returns = [cloud[cloud[:, 2] == 1.0, :2] for cloud in map_.clouds]
+    stride = max(1, -(-sum(map(len, returns)) // _MOST_POINTS))
+    returns = [points[::stride] for points in returns]
+    offsets = np.concatenate([[0], np.cumsum([len(points) for points in returns], dtype=np.int64)])
+    return np.concatenate([np.zeros((0, 2)), *returns]), offsets.astype(np.int64)

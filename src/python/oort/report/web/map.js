@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+"use strict";
+
+const COLOURS = {
+  states: ["#2b6cb0", "#d97706", "#c81e1e", "#8a8a8a"], // tracking, uncertain, lost, not mapped
+  accepted: "#0b8043",
+  undone: "#d32f2f",
+  rejected: "#7c6bd6",
+  node: "#34507a",
+  place: "#b45309",
+  scans: ["#0b6bcb", "#d6336c"],
+};
+const TIME_COLOURS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
+const SIGMA_COLOURS = ["#1a9850", "#91cf60", "#fee08b", "#fc8d59", "#d73027"]; // of chain edges, the surest first
+const SIGMA_LIMITS = [0.01, 0.03, 0.1, 0.3]; // [m]
+
+// The map of a run to pan and zoom, with its layers. Metres are Leaflet's plain coordinates: [y, x].
+class MapView {
+  constructor(place, data) {
+    this.data = data;
+    this.map = L.map(place, { crs: L.CRS.Simple, minZoom: -6, maxZoom: 9, zoomSnap: 0.25, attributionControl: false, preferCanvas: true });
+    L.control.scale({ imperial: false, maxWidth: 160 }).addTo(this.map);
+    this.layers = [];
+    this.robot = null;
+    this.scans = L.layerGroup().addTo(this.map);
+    this.onClosure = () => {};
+    this.onNode = () => {};
+    this.onTime = () => {};
+    this.addGrid();
+    this.addTrajectory();
+    this.addEdges();
+    this.addClosures();
+    this.addNodes();
+    this.addPlaces();
+    this.fit();
+  }
+
+  fit() {
+    this.map.fitBounds(this.bounds.pad(0.02), { animate: false });
+  }
+
+  add(name, colour, layer, on) {
+    this.layers.push({ name, colour, layer, on });
+    if (on) layer.addTo(this.map);
+  }
+
+  addGrid() {
+    const grid = this.data.grid;
+    if (grid === null) {
+      const poses = this.data.samples.pose;
+      const points = Array.from({ length: poses.length / 3 }, (_, k) => [poses[3 * k + 1], poses[3 * k]]);
+      this.bounds = L.latLngBounds(points.length ? points : [[-1, -1], [1, 1]]);
+      return;
+    }
+    const [x, y] = grid.origin;
+    this.bounds = L.latLngBounds([[y, x], [y + grid.size[1] * grid.resolution, x + grid.size[0] * grid.resolution]]);
+    const image = L.imageOverlay(`data:image/png;base64,${grid.png}`, this.bounds, { className: "grid", alt: "occupancy map" });
+    this.add("walls", "#222", image, true);
+  }
+
+  // Runs of consecutive samples with one class each become lines of that class.
+  runs(classes, count) {
+    const poses = this.data.samples.pose;
+    const lines = Array.from({ length: count }, () => []);
+    for (let k = 1; k < classes.length; ++k) {
+      const lists = lines[classes[k]];
+      const last = lists.length ? lists[lists.length - 1] : null;
+      const point = [poses[3 * k + 1], poses[3 * k]];
+      if (classes[k] === classes[k - 1] && last !== null && k > 1) last.push(point);
+      else lists.push([[poses[3 * k - 2], poses[3 * k - 3]], point]);
+    }
+    return lines;
+  }
+
+  coloured(classes, colours) {
+    const group = L.layerGroup();
+    this.runs(classes, colours.length).forEach((lines, k) => {
+      if (!lines.length) return;
+      const line = L.polyline(lines, { color: colours[k], weight: 2.5, interactive: true, bubblingMouseEvents: false });
+      line.on("click", (event) => this.onTime(this.nearestSample(event.latlng)));
+      group.addLayer(line);
+    });
+    return group;
+  }
+
+  addTrajectory() {
+    const { state, time } = this.data.samples;
+    this.add("trajectory by tracking state", COLOURS.states[0], this.coloured(state, COLOURS.states), true);
+    const last = time.length ? time[time.length - 1] || 1 : 1;
+    const steps = Array.from(time, (t) => Math.min(TIME_COLOURS.length - 1, Math.floor((t / last) * TIME_COLOURS.length)));
+    this.add("trajectory by time (dark to light)", TIME_COLOURS[4], this.coloured(steps, TIME_COLOURS), false);
+  }
+
+  nearestSample(latlng) {
+    const poses = this.data.samples.pose;
+    let best = 0, least = Infinity;
+    for (let k = 0; k < poses.length / 3; ++k) {
+      const d = (poses[3 * k] - latlng.lng) ** 2 + (poses[3 * k + 1] - latlng.lat) ** 2;
+      if (d < least) [best, least] = [k, d];
+    }
+    return best;
+  }
+
+  point(node) {
+    const poses = this.data.nodes.poses;
+    return [poses[3 * node + 1], poses[3 * node]];
+  }
+
+  addEdges() {
+    const { ends, sigma, kind } = this.data.edges;
+    const lines = SIGMA_COLOURS.map(() => []);
+    const odometry = [];
+    for (let k = 0; k < sigma.length; ++k) {
+      const line = [this.point(ends[2 * k]), this.point(ends[2 * k + 1])];
+      const above = SIGMA_LIMITS.filter((limit) => sigma[k] > limit).length;
+      lines[above].push(line);
+      if (kind[k] === 1) odometry.push(line);
+    }
+    const group = L.layerGroup();
+    lines.forEach((part, k) => part.length && group.addLayer(L.polyline(part, { color: SIGMA_COLOURS[k], weight: 4, interactive: false })));
+    this.add("chain edges by uncertainty (green 1 cm, red 30 cm)", SIGMA_COLOURS[1], group, false);
+    if (odometry.length) this.add("edges by odometry alone", "#c026d3", L.polyline(odometry, { color: "#c026d3", weight: 5, interactive: false }), false);
+  }
+
+  addClosures() {
+    const { ends, verdict, verdicts } = this.data.closures;
+    const groups = verdicts.map(() => L.layerGroup());
+    for (let k = 0; k < verdict.length; ++k) {
+      const colour = verdict[k] === 0 ? COLOURS.accepted : verdict[k] === 1 ? COLOURS.undone : COLOURS.rejected;
+      const line = L.polyline([this.point(ends[2 * k]), this.point(ends[2 * k + 1])], { color: colour, weight: 1.5, opacity: 0.8, bubblingMouseEvents: false });
+      line.on("click", () => this.onClosure(k));
+      groups[verdict[k]].addLayer(line);
+    }
+    const rejected = L.layerGroup(groups.slice(2));
+    this.add("closures accepted", COLOURS.accepted, groups[0], false);
+    this.add("closures undone by the solution", COLOURS.undone, groups[1], true);
+    if (groups.length > 2) this.add("attempts rejected", COLOURS.rejected, rejected, false);
+  }
+
+  addNodes() {
+    const group = L.layerGroup();
+    for (let k = 0; k < this.data.nodes.poses.length / 3; ++k) {
+      const dot = L.circleMarker(this.point(k), { radius: 3, weight: 1, color: COLOURS.node, fillOpacity: 0.6, bubblingMouseEvents: false });
+      dot.on("click", () => this.onNode(k));
+      group.addLayer(dot);
+    }
+    this.add("nodes (click: the node's scan)", COLOURS.node, group, false);
+  }
+
+  addPlaces() {
+    if (!this.data.places.length) return;
+    const group = L.layerGroup();
+    for (const place of this.data.places) {
+      const name = element("span", {}, `${place.space}/${place.id}`);
+      const icon = L.divIcon({ className: "place", html: name, iconSize: null });
+      group.addLayer(L.marker([place.pose[1], place.pose[0]], { icon, keyboard: true, alt: `${place.space}/${place.id}` }));
+    }
+    this.add("places", COLOURS.place, group, true);
+  }
+
+  // The points of a node's scan, placed by a pose.
+  scanPoints(node, pose) {
+    const { points, offsets, step } = this.data.nodes;
+    const placed = [];
+    for (let k = offsets[node]; k < offsets[node + 1]; ++k) placed.push(Pose.apply(pose, [step * points[2 * k], step * points[2 * k + 1]]));
+    return placed;
+  }
+
+  nodePose(node) {
+    return Pose.at(this.data.nodes.poses, node);
+  }
+
+  // Shows scans on the map: a list of [node, pose, colour].
+  showScans(scans) {
+    this.scans.clearLayers();
+    for (const [node, pose, colour] of scans)
+      for (const [x, y] of this.scanPoints(node, pose))
+        this.scans.addLayer(L.circleMarker([y, x], { radius: 2, stroke: false, fill: true, fillColor: colour, fillOpacity: 0.9, interactive: false }));
+    const points = scans.map(([, pose]) => [pose[1], pose[0]]);
+    if (points.length && !this.map.getBounds().contains(points)) this.map.fitBounds(L.latLngBounds(points).pad(1), { maxZoom: 5 });
+  }
+
+  showRobot(sample) {
+    const [x, y, theta] = Pose.at(this.data.samples.pose, sample);
+    if (this.robot === null) {
+      const arrow = element("div", { class: "arrow" });
+      this.robot = L.marker([y, x], { icon: L.divIcon({ className: "robot", html: arrow, iconSize: [22, 22] }), interactive: false, keyboard: false }).addTo(this.map);
+      this.arrow = arrow;
+    }
+    this.robot.setLatLng([y, x]);
+    this.arrow.style.transform = `rotate(${-theta}rad)`;
+  }
+
+  // Check boxes for the layers.
+  control(place) {
+    for (const entry of this.layers) {
+      const box = element("input", { type: "checkbox", checked: entry.on });
+      box.addEventListener("change", () => (box.checked ? entry.layer.addTo(this.map) : entry.layer.remove()));
+      place.append(element("label", {}, box, element("i", { style: `background:${entry.colour}` }), entry.name));
+    }
+  }
+}

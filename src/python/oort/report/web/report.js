@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+"use strict";
+
+function fillTables(data) {
+  const row = ([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, String(value)));
+  document.querySelector("#figures").append(...data.figures.map(row));
+  const changed = data.changed_parameters.map(({ path, value, default: usual }) => row([path, `${value} (default ${usual})`]));
+  document.querySelector("#changed").append(...(changed.length ? changed : [row(["all", "at their defaults"])]));
+  document.querySelector("#parameters").append(...Object.entries(data.parameters).map(row));
+  const faults = data.odometry_faults.first.map((fault) => `odometry ${fault.kind} at ${seconds(fault.time - data.samples.begin)}: ${fault.distance.toFixed(2)} m, ${degrees(fault.angle)}`);
+  const notes = [...data.notes, ...faults];
+  document.querySelector("#notes").append(...(notes.length ? notes : ["nothing to note"]).map((note) => element("li", {}, note)));
+}
+
+let view = null; // also for who wants to look into the page from its console
+
+async function main() {
+  const data = await Data.load("oort-data");
+  document.querySelector("#name").textContent = data.name;
+  document.querySelector("#kind").textContent = `${data.kind}, ${seconds(data.recorded_seconds)}, ${data.samples.scans} scans`;
+  fillTables(data);
+  view = new MapView(document.querySelector("#map"), data);
+  view.control(document.querySelector("#layers"));
+  document.querySelector("#fit").addEventListener("click", () => view.fit());
+  const timeline = new Timeline(document.querySelector("#charts"), document.querySelector("#time"), document.querySelector("#now"), data.samples, data.odometry_faults.first);
+  const closures = new Closures(view, document.querySelector("#closure-list"), document.querySelector("#verdict"), document.querySelector("#details"), document.querySelector("#overlay"));
+  timeline.onTime = (sample) => data.samples.time.length && view.showRobot(sample);
+  view.onTime = (sample) => timeline.select(sample);
+  view.onClosure = (k) => closures.select(k);
+  view.onNode = (node) => closures.showNode(node);
+  document.body.dataset.ready = "true";
+}
+
+main().catch((error) => {
+  document.querySelector("#name").textContent = `This report cannot be shown: ${error.message}`;
+  throw error;
+});

@@ -1,0 +1,147 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""report.html and compare.html in a real browser."""
+
+import json
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from oort.cli.compare import main as compare
+from oort.cli.replay import main as replay
+from oort.errors import InputError
+from oort.report.arrays import unpack
+from oort.report.page import make_report_page, read_page_data
+from oort.simulate import Drive
+from oort.simulate.writers import write_carmen
+
+_HOSTILE = "</script><img src=x onerror=document.title='owned'>"
+
+
+@pytest.fixture(scope="module")
+def run(drive: Drive, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a replay of a drive's first minute, with a place whose name is markup."""
+    folder = tmp_path_factory.mktemp("page")
+    write_carmen(drive, folder / "home.clf")
+    begin = float(drive.scan_stamps[0]) * 1e-9
+    events = [{"t": begin + 30.0, "call": "graph_loc/create", "args": ["rooms", _HOSTILE]}]
+    (folder / "events.json").write_text(json.dumps(events))
+    args = [str(folder / "home.clf"), "--events", str(folder / "events.json"), "--until", "60", "--quiet"]
+    assert replay([*args, "--out", str(folder / "run")]) == 0
+    return folder / "run"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    chromium = shutil.which("chromium")
+    assert chromium, "chromium is missing: scripts/setup.sh --test installs it"
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """A page that has no network and fails the test for an error in a script."""
+    errors: list[str] = []
+    context = browser.new_context(offline=True, viewport={"width": 1500, "height": 1000})
+    opened = context.new_page()
+    opened.on("pageerror", lambda error: errors.append(str(error)))
+    opened.on("request", lambda request: errors.append(request.url) if request.url.startswith("http") else None)
+    yield opened
+    context.close()
+    assert errors == []
+
+
+def _open(page: Page, path: Path) -> None:
+    page.goto(path.as_uri())
+    page.wait_for_selector("body[data-ready]")
+
+
+def test_the_report_opens_from_disk_and_shows_the_run(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    report = json.loads((run / "report.json").read_text())
+    assert page.locator("#name").inner_text() == "home"
+    assert str(report["nodes"]) in page.locator("#figures").inner_text()
+    assert page.locator("#map img.grid").count() == 1
+    assert page.locator("#charts canvas").count() == 2
+    assert (run / "report.html").stat().st_size < 10e6
+
+
+def test_names_from_outside_are_text(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    assert _HOSTILE in page.locator(".place").all_inner_texts()[0]
+    assert page.title() == "Oort: home"
+
+
+def test_a_closure_shows_its_two_scans_by_keyboard_alone(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    page.locator("#closure-list").focus()
+    page.keyboard.press("ArrowDown")
+    details = page.locator("#details").inner_text()
+    assert "the map has it within" in details
+    assert "Inlier ratio" in details
+    assert page.locator("#overlay").is_visible()
+    drawn = "canvas => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some(v => v > 0)"
+    assert page.locator("#overlay").evaluate(drawn)
+
+
+def test_the_slider_moves_the_robot(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    slider = page.locator("#time")
+    slider.focus()
+    slider.press("ArrowRight")
+    first = page.locator(".robot").bounding_box()
+    slider.press("End")
+    assert page.locator(".robot").bounding_box() != first
+    assert "tracking" in page.locator("#now").inner_text()
+
+
+def test_a_click_on_the_trajectory_sets_the_time(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    data = read_page_data(run / "report.html")
+    poses = unpack(data["samples"]["pose"])
+    third = len(poses) // 3  # not at the place in the middle, whose name lies over the line
+    place = page.evaluate(
+        "at => { const p = view.map.latLngToContainerPoint(at); return [p.x, p.y]; }", poses[third, 1::-1].tolist()
+    )
+    box = page.locator("#map").bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + place[0], box["y"] + place[1])
+    shown = int(page.locator("#time").input_value())
+    assert abs(poses[shown, :2] - poses[third, :2]).max() < 0.3
+
+
+def test_layers_are_switched_on_and_off(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    page.get_by_label("walls").uncheck()
+    assert page.locator("#map img.grid").count() == 0
+    for name in ("nodes", "closures accepted", "chain edges", "trajectory by time"):
+        page.get_by_label(name).check()
+
+
+def test_two_runs_side_by_side_and_over_each_other(page: Page, run: Path, tmp_path: Path) -> None:
+    assert compare([str(run), str(run / "report.html"), "--out", str(tmp_path / "both.html")]) == 0
+    _open(page, tmp_path / "both.html")
+    assert "at most 0.000 m" in page.locator("#apart-text").inner_text()
+    assert page.locator("#map-b").is_visible()
+    page.get_by_label("over each other").check()
+    assert not page.locator("#map-b").is_visible()
+    assert page.locator("#map-a img.over").count() == 1
+
+
+def test_what_is_no_report_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "page.html").write_text("<html></html>")
+    with pytest.raises(InputError, match="is no report of a replay"):
+        read_page_data(tmp_path / "page.html")
+    assert compare([str(tmp_path), str(tmp_path)]) == 2
+    assert "report.html cannot be read" in capsys.readouterr().err
+
+
+def test_a_number_that_json_has_not_becomes_null(tmp_path: Path) -> None:
+    (tmp_path / "report.html").write_bytes(make_report_page("x", {"page_version": 1, "value": float("nan")}))
+    assert read_page_data(tmp_path / "report.html")["value"] is None
