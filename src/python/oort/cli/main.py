@@ -11,6 +11,7 @@ _TOOLS = {
     "replay": "map a recorded drive",
     "localize": "follow a recorded drive on a saved map",
     "render": "draw a saved map as pictures for map_server",
+    "export": "write a saved map in the formats of other programs",
     "compare": "lay two replays side by side",
     "merge": "join two saved maps of the same home",
     "simulate": "make up a home and a drive through it",

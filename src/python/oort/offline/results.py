@@ -77,7 +77,7 @@ def write_results(drive: Drive, out: Path, map_path: str) -> Results:
     outputs.write(f"the map {map_path}", lambda: save_map(map_path, map_))
     base_poses = drive.recorder.base_poses(map_)
     outputs.write("trajectory.tum", lambda: write_tum(out / "trajectory.tum", drive.recorder.stamps, base_poses))
-    outputs.write("graph.g2o", lambda: write_g2o(out / "graph.g2o", _pose_graph(map_)))
+    outputs.write("graph.g2o", lambda: write_g2o(out / "graph.g2o", pose_graph(map_)))
     drawn = outputs.work_out("any picture of the map", lambda: draw_map(map_, drive.parameters))
     grid, notes = (drawn[0][0], drawn[1]) if isinstance(drawn, tuple) else (None, [])
     if grid is not None and grid.cells.size:
@@ -178,7 +178,7 @@ def _closure_ends(map_: Map) -> np.ndarray[Any, np.dtype[np.float64]]:
     return np.stack([positions[edges["i"]], positions[edges["j"]]], axis=1)
 
 
-def _pose_graph(map_: Map) -> PoseGraph:
+def pose_graph(map_: Map) -> PoseGraph:
     """The graph as solved; what a closure's switch took from it is taken from its information too."""
     chain, loops = map_.edges, map_.switchable_edges
     weight = np.maximum(loops["switch"], 1e-3)[:, None, None] ** 2

@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes a saved map in the formats of other programs."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from oort._core import Map, OccupancyGrid, Parameters
+from oort.errors import InputError
+from oort.export.drawing import write_dxf, write_svg
+from oort.export.g2o import write_g2o
+from oort.export.geojson import feature, write_geojson
+from oort.export.kitti import write_kitti
+from oort.export.map_server import write_map_server
+from oort.export.nav2 import thin_route, write_docks, write_route
+from oort.export.tum import write_tum
+from oort.export.valetudo import write_valetudo
+from oort.export.walls import fit_walls
+from oort.offline.drawing import draw_map
+from oort.offline.results import pose_graph
+from oort.recording.types import Pose
+
+_DOCKS = "dock"  # the namespace of docks
+
+FORMATS = {
+    "pgm": "map.pgm and map.yaml for map_server (the name's ending counts: .pgm or .png)",
+    "svg": "floor plan: straight walls and places",
+    "dxf": "floor plan for CAD programs, in metres",
+    "geojson": "walls, places and docks, in metres",
+    "nav2-docks": "database of docks for nav2's docking server (YAML)",
+    "nav2-route": "graph of the ways driven for nav2's route server (GeoJSON)",
+    "valetudo": "map for home automation in Valetudo's JSON",
+    "g2o": "the pose graph",
+    "tum": "poses of the sensor at the nodes, TUM",
+    "kitti": "the same, KITTI",
+}
+
+
+def export(map_: Map, parameters: Parameters, format_: str, out: str) -> str:
+    """Writes a map in one of FORMATS to a file; returns the names of what was written.
+
+    Raises InputError if the map holds nothing for that format, OortError if the file cannot be written.
+    """
+    if not len(map_):
+        raise InputError("the map is empty: there is nothing to export")
+    return _WRITERS[format_](map_, parameters, Path(out)) or out
+
+
+def places_of(map_: Map) -> list[tuple[str, str, Pose]]:
+    """Namespace, name and pose of each place."""
+    found = ((space, id_, map_.locate(space, id_)) for space, id_, *_ in map_.locations)
+    return [(space, id_, pose) for space, id_, pose in found if pose is not None]
+
+
+def _named(map_: Map) -> list[tuple[str, Pose]]:
+    return [(f"{space}/{id_}", pose) for space, id_, pose in places_of(map_)]
+
+
+def _docks(map_: Map) -> list[tuple[str, Pose]]:
+    return [(id_, pose) for space, id_, pose in places_of(map_) if space == _DOCKS]
+
+
+def _grid(map_: Map, parameters: Parameters) -> OccupancyGrid:
+    (_, cleaned), _ = draw_map(map_, parameters)
+    return cleaned
+
+
+def _pgm(map_: Map, parameters: Parameters, out: Path) -> str:
+    grid = _grid(map_, parameters)
+    image: Literal["png", "pgm"] = "png" if out.suffix == ".png" else "pgm"
+    base = out.with_suffix("") if out.suffix in (".pgm", ".png", ".yaml") else out
+    write_map_server(str(base), grid.cells, grid.resolution, (*grid.origin, 0.0), image_format=image)
+    return f"{base}.{image} {base}.yaml"
+
+
+def _geojson(map_: Map, _: Parameters, out: Path) -> None:
+    walls = np.round(fit_walls(map_), 4).reshape(-1, 2, 2).tolist()
+    features = [feature({"kind": "wall"}, "LineString", wall) for wall in walls]
+    for space, id_, (x, y, theta) in places_of(map_):
+        properties: dict[str, Any] = {"kind": "place", "namespace": space, "name": id_, "theta": round(theta, 6)}
+        features.append(feature(properties, "Point", [round(x, 4), round(y, 4)]))
+    write_geojson(out, features, "oort_map")
+
+
+def _route(map_: Map, _: Parameters, out: Path) -> None:
+    edges = map_.edges
+    ends = np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64).reshape(-1, 2)
+    write_route(out, *thin_route(map_.node_poses[:, :2], ends))
+
+
+def _tum(map_: Map, _: Parameters, out: Path) -> None:
+    write_tum(out, [f"{time:.6f}" for time in map_.cloud_times.tolist()], map_.node_poses)
+
+
+_WRITERS: dict[str, Callable[[Map, Parameters, Path], str | None]] = {
+    "pgm": _pgm,
+    "svg": lambda map_, _, out: write_svg(out, fit_walls(map_), _named(map_)),
+    "dxf": lambda map_, _, out: write_dxf(out, fit_walls(map_), _named(map_)),
+    "geojson": _geojson,
+    "nav2-docks": lambda map_, _, out: write_docks(out, _docks(map_)),
+    "nav2-route": _route,
+    "valetudo": lambda map_, parameters, out: write_valetudo(
+        out, _grid(map_, parameters), [pose for _, pose in _docks(map_)]
+    ),
+    "g2o": lambda map_, _, out: write_g2o(out, pose_graph(map_)),
+    "tum": _tum,
+    "kitti": lambda map_, _, out: write_kitti(out, map_.node_poses),
+}

@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""A saved map in the formats of other programs, read back."""
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from ezdxf.filemanagement import readfile
+from ruamel.yaml import YAML
+
+from oort import Map, Parameters
+from oort.cli.export import main
+from oort.errors import InputError
+from oort.export import read_g2o, read_map_server, read_tum
+from oort.offline.export import FORMATS, export
+from oort.offline.replay import replay
+from oort.recording import open_recording
+from oort.simulate import Drive
+from oort.simulate.writers import write_carmen
+
+_NAME = "sofa & <b>"
+
+
+@pytest.fixture(scope="module")
+def map_(drive: Drive, tmp_path_factory: pytest.TempPathFactory) -> Map:
+    path = tmp_path_factory.mktemp("export") / "home.clf"
+    write_carmen(drive, path)
+    made = replay(open_recording(path)).map
+    made.locations = [("dock", "dock", 0, (0.1, 0.0, 0.5)), ("rooms", _NAME, 20, (0.0, 0.0, 0.0))]
+    return made
+
+
+@pytest.fixture(scope="module")
+def base(map_: Map, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("saved") / "home"
+    map_.save(str(path))
+    return path
+
+
+def _export(base: Path, format_: str, name: str) -> Path:
+    assert main([str(base), format_, str(base.parent / name)]) == 0
+    return base.parent / name
+
+
+@pytest.mark.parametrize("format_", FORMATS)
+def test_the_same_map_gives_the_same_bytes(base: Path, format_: str) -> None:
+    first = _export(base, format_, "a.x")
+    files = sorted(base.parent.glob("a*"))
+    before = [path.read_bytes() for path in files]
+    _export(base, format_, "a.x")
+    if format_ != "dxf":  # a DXF tells when it was written
+        assert [path.read_bytes() for path in files] == before
+    assert files
+    for path in files:
+        path.unlink()
+    assert first.parent.is_dir()
+
+
+def test_map_server_reads_the_picture(base: Path) -> None:
+    assert read_map_server(_export(base, "pgm", "grid.pgm").with_suffix(".yaml")).resolution == 0.05
+    assert _export(base, "pgm", "grid.png").is_file()
+
+
+def test_walls_of_the_dxf_lie_on_the_true_walls(base: Path, drive: Drive) -> None:
+    document = readfile(_export(base, "dxf", "home.dxf"))
+    space = document.modelspace()
+    lines = np.array(
+        [
+            [p.x, p.y, q.x, q.y]
+            for line in space.query("LINE[layer=='WALLS']")
+            for p, q in [(line.dxf.start, line.dxf.end)]
+        ]
+    )
+    assert _NAME in [text.dxf.text for text in space.query("TEXT")][1]
+    long = lines[np.hypot(*(lines[:, 2:] - lines[:, :2]).T) > 1.0]
+    assert len(long) > 5
+    middles = long.reshape(-1, 2, 2).mean(axis=1)
+    a, b = drive.home.segments[:, :2], drive.home.segments[:, 2:]
+    t = np.clip(((middles[:, None] - a) * (b - a)).sum(2) / np.maximum(((b - a) ** 2).sum(1), 1e-12), 0.0, 1.0)
+    off = np.linalg.norm(a + t[..., None] * (b - a) - middles[:, None], axis=2).min(axis=1)
+    assert np.median(off) < 0.02
+    assert off.max() < 0.1
+
+
+def test_the_svg_is_xml_with_walls_and_places(base: Path) -> None:
+    root = ElementTree.parse(_export(base, "svg", "home.svg")).getroot()
+    names = [text.text for text in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert names == ["dock/dock", f"rooms/{_NAME}"]
+    assert len(list(root.iter("{http://www.w3.org/2000/svg}line"))) > 10
+
+
+def test_geojson_has_walls_and_places(base: Path, map_: Map) -> None:
+    features = json.loads(_export(base, "geojson", "home.geojson").read_text())["features"]
+    places = {f["properties"]["name"]: f for f in features if f["properties"]["kind"] == "place"}
+    assert places[_NAME]["geometry"]["coordinates"] == pytest.approx(
+        list(map_.locate("rooms", _NAME) or ())[:2], abs=1e-4
+    )
+
+
+def test_nav2_gets_the_dock_and_a_connected_route(base: Path, map_: Map) -> None:
+    docks = YAML(typ="safe").load(_export(base, "nav2-docks", "docks.yaml").read_text())["docks"]
+    assert docks["dock"]["frame"] == "map"
+    assert docks["dock"]["pose"] == pytest.approx(list(map_.locate("dock", "dock") or ()), abs=1e-6)
+    features = json.loads(_export(base, "nav2-route", "route.geojson").read_text())["features"]
+    nodes = {f["properties"]["id"] for f in features if f["geometry"]["type"] == "Point"}
+    ways = [(f["properties"]["startid"], f["properties"]["endid"]) for f in features if "startid" in f["properties"]]
+    assert len({f["properties"]["id"] for f in features}) == len(features)
+    reached: set[int] = {0}
+    seen: set[int] = set()
+    while reached - seen:
+        node = min(reached - seen)
+        seen.add(node)
+        reached |= {end for start, end in ways if start == node}
+    assert reached == nodes
+
+
+def test_valetudo_gets_every_known_cell_once(base: Path, map_: Map) -> None:
+    document = json.loads(_export(base, "valetudo", "map.json").read_text())
+    grid = map_.render(Parameters()).map_cleaned
+    for layer in document["layers"]:
+        runs = np.reshape(layer["compressedPixels"], (-1, 3))
+        drawn = np.zeros(grid.cells.shape, dtype=np.bool_)
+        for x, y, count in runs.tolist():
+            assert not drawn[y, x : x + count].any()
+            drawn[y, x : x + count] = True
+        np.testing.assert_array_equal(drawn, grid.cells[::-1] == {"floor": 0, "wall": 100}[layer["type"]])
+        assert layer["dimensions"]["pixelCount"] == drawn.sum()
+    assert [entity["type"] for entity in document["entities"]] == ["charger_location"]
+
+
+def test_trajectories_and_graph_have_the_nodes(base: Path, map_: Map) -> None:
+    np.testing.assert_allclose(read_tum(_export(base, "tum", "t.tum")).poses, map_.node_poses, atol=1e-9)
+    assert len(read_g2o(_export(base, "g2o", "g.g2o")).ids) == len(map_)
+    kitti = np.loadtxt(_export(base, "kitti", "k.txt"))
+    np.testing.assert_allclose(kitti[:, [3, 7]], map_.node_poses[:, :2])
+    np.testing.assert_allclose(np.arctan2(kitti[:, 4], kitti[:, 0]), map_.node_poses[:, 2])
+
+
+def test_what_is_not_there_is_told(tmp_path: Path, map_: Map) -> None:
+    with pytest.raises(InputError, match="the map is empty"):
+        export(Map(), Parameters(), "svg", str(tmp_path / "x.svg"))
+    places, map_.locations = map_.locations, []
+    with pytest.raises(InputError, match="no dock"):
+        export(map_, Parameters(), "nav2-docks", str(tmp_path / "x.yaml"))
+    map_.locations = places
