@@ -11,12 +11,17 @@ import numpy as np
 import pytest
 
 from conftest import ROOT
+from oort import Parameters
 from oort.poses import Array, compose
-from oort.simulate import SimulationConfig, simulate_drive
+from oort.simulate import Drive, SimulationConfig, simulate_drive
+from oort.simulate.writers import write_drive
 
 sys.path.insert(0, str(ROOT / "bench"))
 
+from trials.consistency import consistency
+from trials.drives import recording_of
 from trials.faults import lost_span
+from trials.replays import replay
 from trials.truth import compose_chain, edge_errors, free_directions, nees
 from trials.workers import Failure, run_all
 
@@ -106,3 +111,29 @@ def test_the_command_measures_keeps_and_compares(tmp_path: Path) -> None:
     assert "simulated" not in run("--rows", "corridor", "--homes", "1", "--keep", str(tmp_path)).stderr
     compared = run("--compare", str(tmp_path / "old.json"), str(tmp_path / "results.json")).stdout
     assert "along_max: 0 drives better, 0 worse, 1 the same or new" in compared
+
+
+def test_a_map_agrees_with_itself_until_it_is_bent(drive: Drive) -> None:
+    map_ = replay(recording_of(drive, "home"), Parameters()).drive.map
+    whole = consistency(map_)
+    assert whole.pairs > 100
+    assert whole.agreement > 0.95
+    assert whole.contradicting < 0.05
+    assert whole.untied_nodes == 0
+    bent = map_.node_poses
+    bent[len(bent) // 2 :, 0] += 0.4
+    assert consistency(map_, bent).contradicting > 0.2 > whole.contradicting + 0.1
+
+
+def test_the_corpus_measures_each_recording_and_names_what_it_cannot_read(drive: Drive, tmp_path: Path) -> None:
+    write_drive(drive, tmp_path, "home", picture=False)
+    (tmp_path / "broken.clf").write_text("no log\n")
+    out = tmp_path / "out"
+    command = [sys.executable, str(ROOT / "bench/corpus.py"), "--folder", str(tmp_path), "--keep", str(out)]
+    done = subprocess.run([*command, "--view", "120"], capture_output=True, text=True, check=True)
+    assert "broken.clf: failed: InputError" in done.stdout
+    results = json.loads((out / "results.json").read_text())
+    assert set(results["failed"]) == {"broken.clf"}
+    figures = results["recordings"]["home.clf"]
+    assert figures["ate"] < 0.05 < figures["ate_odometry"]
+    assert (out / "home.clf/map.png").is_file()
