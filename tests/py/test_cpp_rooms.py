@@ -17,6 +17,7 @@ ORDER = [
     "graph",
     "map",
     "odometry",
+    "sensor",
     "local_slam",
     "loop_closure",
     "maintenance",

@@ -103,6 +103,36 @@ py::dict dict_of(std::uint64_t count, const std::vector<OdometryFault>& faults) 
   return dict;
 }
 
+const char* name_of(BeamOrder order) {
+  switch (order) {
+    case BeamOrder::kStamped:
+      return "stamped";
+    case BeamOrder::kReversed:
+      return "reversed";
+    case BeamOrder::kAtOnce:
+      return "at_once";
+  }
+  return "";
+}
+
+py::dict dict_of(const LaserFindings& findings) {
+  py::list body;
+  for (const BodySector& sector : findings.body) body.append(py::make_tuple(sector.from, sector.to, sector.range));
+  py::dict costs;
+  for (const BeamOrder order : {BeamOrder::kStamped, BeamOrder::kReversed, BeamOrder::kAtOnce}) {
+    costs[name_of(order)] = findings.beam_order_evidence.costs[static_cast<std::size_t>(order)];
+  }
+  py::dict order;
+  order["order"] = name_of(findings.beam_order);
+  order["decided"] = findings.beam_order_is_decided;
+  order["tests"] = findings.beam_order_evidence.tests;
+  order["costs"] = costs;
+  py::dict dict;
+  dict["beam_order"] = order;
+  dict["body"] = body;
+  return dict;
+}
+
 py::dict dict_of(const MapperStatistics& statistics) {
   py::dict dict;
   dict["scans"] = statistics.local.scans;
@@ -114,6 +144,7 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["contradictions"] = statistics.trajectory.contradictions;
   dict["tracking"] = dict_of(statistics.tracking);
   dict["odometry_faults"] = dict_of(statistics.odometry_fault_count, statistics.odometry_faults);
+  dict["laser"] = dict_of(statistics.laser);
   dict["loops"] = dict_of(statistics.global.loops);
   dict["docks"] = dict_of(statistics.global.docks);
   dict["solved"] = dict_of(statistics.global.solved);

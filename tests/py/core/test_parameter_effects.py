@@ -19,8 +19,8 @@ from oort.simulate.writers import write_carmen
 OF_THE_NODE = {"base_frame", "odom_frame", "sensor_frame", "map_frame"}
 """Names for the ROS node alone."""
 
-OF_BAGS = {"motion_compensation", "max_extrapolation", "use_imu"}
-"""What a CARMEN log has no occasion for; tests/py/test_recording_motion.py has the cases."""
+OF_BAGS = {"motion_compensation", "max_extrapolation", "use_imu", "beam_order"}
+"""What a CARMEN log has no occasion for; tests/py/recording/test_motion.py and test_laser.py have the cases."""
 
 RARE = {
     # how wide the matcher searches where odometry is very sure, and where it begins again after a poor match
@@ -30,6 +30,8 @@ RARE = {
     # third_party/frsm/tests/test_tracker.cpp has the case: this odometry is never off by so much
     "incremental_graph_builder.frsm_matcher.max_search_range_xy",
     "incremental_graph_builder.frsm_matcher.max_search_range_theta",
+    # tests/py/test_laser.py has the case: this robot does not see itself
+    "find_body",
     # tests/cpp/test_dock.cpp has the case
     "dock_graph_builder.dock_match_least_size",
     # tests/cpp/test_loop_closure.cpp has the case

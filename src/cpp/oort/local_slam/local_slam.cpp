@@ -21,23 +21,26 @@ void check_odometry(const LaserScan& scan, const Pose2& T_odom_base) {
 
 }  // namespace
 
-LocalSlam::LocalSlam(const Parameters& parameters) : parameters_(parameters), trajectory_(parameters) {}
+LocalSlam::LocalSlam(const Parameters& parameters)
+    : parameters_(parameters), laser_(parameters, {}), trajectory_(parameters) {}
 
 void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
   if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
   if (last_) throw StateError("the sensor's place on the base cannot change while scans are being mapped");
-  T_base_sensor_ = T_base_sensor;
+  laser_ = Laser(parameters_, T_base_sensor);
 }
 
 void LocalSlam::begin_map() {
   monitor_.forget();
   trajectory_.begin_map();
+  laser_ = Laser(parameters_, T_base_sensor());
   last_.reset();
 }
 
 void LocalSlam::begin_session(const SessionStart& start, std::uint64_t node_count) {
   monitor_.forget();
   trajectory_.begin_session(start, node_count);
+  laser_ = Laser(parameters_, T_base_sensor());
   last_.reset();
 }
 
@@ -49,7 +52,8 @@ void LocalSlam::interrupt() {
 LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
   check_odometry(scan, T_odom_base);
   LocalScan now;
-  now.cloud = deskewed(scan, sweep_of_base);
+  // Odometry's own scales are off by little over the length of a scan: the motion is taken as measured.
+  now.cloud = laser_.take(scan, T_odom_base, sweep_of_base);
   now.T_odom_base_measured = T_odom_base;
   const MotionHypotheses hypotheses = expect(now);
   ++counts_.scans;
@@ -58,7 +62,7 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
   if (!can_match) ++counts_.scans_too_small;
   bool due = can_match && is_due(now);
   if (can_match && (due || parameters_.incremental_graph_builder.match_every_scan)) {
-    trajectory_.track(now, hypotheses, T_base_sensor_);
+    trajectory_.track(now, hypotheses, T_base_sensor());
   } else {
     trajectory_.extrapolate(now);
   }
@@ -76,16 +80,8 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
 
 std::optional<TrajectoryNode> LocalSlam::make_node() {
   if (last_->is_node || !has_returns(*last_)) return std::nullopt;
-  if (!last_->was_tracked) trajectory_.track(*last_, {}, T_base_sensor_);
+  if (!last_->was_tracked) trajectory_.track(*last_, {}, T_base_sensor());
   return trajectory_.add_node(*last_);
-}
-
-// Odometry's own scales of translation and rotation are off by little over the length of a scan: the motion is taken as
-// measured.
-PointCloud LocalSlam::deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const {
-  PointCloud cloud = to_point_cloud(scan);
-  if (!parameters_.motion_compensation) return cloud;
-  return deskew(std::move(cloud), sweep_of_sensor(sweep_of_base, T_base_sensor_));
 }
 
 /// Where odometry, with what it is always wrong by taken out of each motion, has the base; or where it likelier is, if
@@ -100,7 +96,7 @@ MotionHypotheses LocalSlam::expect(LocalScan& scan) {
     hypotheses = monitor_.judge(scan.cloud.time, moved);
     scan.T_odom_base = last_->T_odom_base * hypotheses.T_before_after.front();
   }
-  scan.T_odom_sensor = scan.T_odom_base * T_base_sensor_;
+  scan.T_odom_sensor = scan.T_odom_base * T_base_sensor();
   return hypotheses;
 }
 
@@ -120,7 +116,7 @@ bool LocalSlam::is_due(const LocalScan& scan) const {
 /// Wheels that slip, or a kidnapped robot: its scans tell of a motion that odometry does not.
 bool LocalSlam::has_moved_unnoticed(const LocalScan& scan) const {
   if (!trajectory_.is_going_on() || !scan.tracked.usable() || !trajectory_.matcher().knows_odometry()) return false;
-  const Pose2 moved = T_base_sensor_ * trajectory_.from_newest(scan.tracked.T_local_sensor) * inverse(T_base_sensor_);
+  const Pose2 moved = T_base_sensor() * trajectory_.from_newest(scan.tracked.T_local_sensor) * inverse(T_base_sensor());
   return moved.translation().norm() >= LocalSlamTuning::kUnnoticedMotion * parameters_.linear_update ||
          std::abs(moved.theta) >= LocalSlamTuning::kUnnoticedMotion * parameters_.angular_update;
 }

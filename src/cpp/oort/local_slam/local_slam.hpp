@@ -10,6 +10,7 @@
 #include "oort/local_slam/trajectory_builder.hpp"
 #include "oort/odometry/odometry_monitor.hpp"
 #include "oort/parameters/parameters.hpp"
+#include "oort/sensor/laser.hpp"
 
 namespace oort {
 
@@ -37,7 +38,7 @@ class LocalSlam {
 
   /// Throws StateError once scans are being mapped, InputError if the pose is not finite.
   void mount_sensor(const Pose2& T_base_sensor);
-  const Pose2& T_base_sensor() const { return T_base_sensor_; }
+  const Pose2& T_base_sensor() const { return laser_.T_base_sensor(); }
 
   void begin_map();
   void begin_session(const SessionStart& start, std::uint64_t node_count);
@@ -56,23 +57,23 @@ class LocalSlam {
   /// The latest scan. There must be one.
   const LocalScan& last_scan() const { return *last_; }
   /// Where the latest scan was taken, as odometry has it.
-  Pose2 T_odom_sensor_measured() const { return last_->T_odom_base_measured * T_base_sensor_; }
+  Pose2 T_odom_sensor_measured() const { return last_->T_odom_base_measured * T_base_sensor(); }
   std::uint64_t newest_node() const { return trajectory_.newest_node(); }
   Pose2 T_newest_sensor() const { return trajectory_.from_newest(last_->tracked.T_local_sensor); }
 
+  const Laser& laser() const { return laser_; }
   const LocalCounts& counts() const { return counts_; }
   const OdometryMonitor& odometry_monitor() const { return monitor_; }
   const TrajectoryCounts& trajectory_counts() const { return trajectory_.counts(); }
 
  private:
-  PointCloud deskewed(const LaserScan& scan, const Sweep& sweep_of_base) const;
   MotionHypotheses expect(LocalScan& scan);
   bool has_returns(const LocalScan& scan) const;
   bool is_due(const LocalScan& scan) const;
   bool has_moved_unnoticed(const LocalScan& scan) const;
 
   Parameters parameters_;
-  Pose2 T_base_sensor_;
+  Laser laser_;
   OdometryMonitor monitor_;
   TrajectoryBuilder trajectory_;
   std::optional<LocalScan> last_;

@@ -15,6 +15,7 @@
 #include "oort/localization/view_memory.hpp"
 #include "oort/matching/rejection.hpp"
 #include "oort/odometry/odometry_model.hpp"
+#include "oort/sensor/laser.hpp"
 
 namespace oort {
 
@@ -88,7 +89,7 @@ class Localizer {
   TrackingParameters parameters_;
   RelocalizerParameters kept_parameters_;
   int min_points_;
-  bool deskews_;
+  Laser laser_;
   Pose2 T_base_sensor_;
   OdometryModel odometry_model_;
   frsm::Matcher matcher_;

@@ -48,6 +48,8 @@ class PointClouds {
   void push_back(Shared cloud) { clouds_.push_back(std::move(cloud)); }
   void set(std::size_t k, PointCloud cloud) { clouds_[k] = std::make_shared<const PointCloud>(std::move(cloud)); }
 
+  void set(std::size_t k, Shared cloud) { clouds_[k] = std::move(cloud); }
+
   std::size_t size() const { return clouds_.size(); }
   bool empty() const { return clouds_.empty(); }
   const PointCloud& operator[](std::size_t k) const { return *clouds_[k]; }

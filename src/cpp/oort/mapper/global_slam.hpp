@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "oort/geometry/work_meter.hpp"
@@ -36,6 +37,9 @@ class GlobalSlam {
   /// A new session: loops are looked for as on a map that was just loaded.
   void begin_session();
   void add(const NodeAddition& node);
+
+  /// A node's cloud with some readings taken out. What was drawn of it stays until begin_session().
+  void replace_cloud(std::uint64_t node, PointClouds::Shared cloud) { map_.edit().clouds.set(node, std::move(cloud)); }
 
   bool has_work() const;
   /// Does the next piece of work.

@@ -73,6 +73,7 @@ void Mapper::begin_session(const Pose2& T_map_sensor) {
   check_reach(T_map_sensor, "Mapper.begin_session: the start pose");
   take_effect(lane_->settle());
   lane_->slam().begin_session();
+  session_begin_ = map_.node_count();
   if (map_.node_count() == 0) {
     local_.begin_map();
     return;
@@ -84,7 +85,23 @@ void Mapper::begin_session(const Pose2& T_map_sensor) {
 
 void Mapper::finish() {
   take_effect(lane_->settle());
+  const bool cleaned = remove_body();
   take_effect({lane_->slam().finish()});
+  if (cleaned) lane_->slam().begin_session();  // what it has drawn shows the body still
+}
+
+/// Takes the robot's own body out of the clouds of this session from before it was known. Whether there was any.
+bool Mapper::remove_body() {
+  if (!local_.laser().knows_body()) return false;
+  bool cleaned = false;
+  for (std::uint64_t k = session_begin_; k < map_.node_count(); ++k) {
+    PointCloud cloud = map().clouds[k];
+    if (!local_.laser().remove_body_from(cloud)) continue;
+    map_.edit().clouds.set(k, cloud);
+    lane_->slam().replace_cloud(k, map().clouds.shared(k));
+    cleaned = true;
+  }
+  return cleaned;
 }
 
 void Mapper::set_map(const Map& map) {
@@ -94,6 +111,7 @@ void Mapper::set_map(const Map& map) {
   lane_->slam().set_map(map);
   map_.set_map(lane_->slam().map());
   global_counts_ = lane_->slam().counts();
+  session_begin_ = map_.node_count();
   local_.begin_map();
 }
 
@@ -125,8 +143,8 @@ std::optional<Pose2> Mapper::locate(const std::string& name_space, const std::st
 
 MapperStatistics Mapper::statistics() const {
   const OdometryMonitor& odometry = local_.odometry_monitor();
-  return {local_.counts(), local_.trajectory_counts(), tracking_counts_,
-          global_counts_,  odometry.fault_count(),     odometry.faults()};
+  return {local_.counts(),        local_.trajectory_counts(), tracking_counts_,         global_counts_,
+          odometry.fault_count(), odometry.faults(),          local_.laser().findings()};
 }
 
 WorkSeconds Mapper::work_seconds() const {

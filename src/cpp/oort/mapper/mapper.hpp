@@ -102,6 +102,7 @@ class Mapper {
  private:
   bool take_effect(const std::vector<Correction>& corrections);
   void add(const TrajectoryNode& node);
+  bool remove_body();
   void count_tracking(TrackingState state);
   std::uint64_t work_granted(double time);
   ScanResult result(ScanOutcome outcome) const;
@@ -109,6 +110,7 @@ class Mapper {
   Parameters parameters_;
   LocalSlam local_;
   GrowingMap map_;
+  std::uint64_t session_begin_ = 0;  // its first node
   TrackingMonitor tracking_;
   TrackingState tracking_state_ = TrackingState::kTracking;
   TrackingCounts tracking_counts_;

@@ -34,6 +34,7 @@ struct MapperStatistics {
   GlobalCounts global;
   std::uint64_t odometry_fault_count = 0;
   std::vector<OdometryFault> odometry_faults;  ///< the first 1000
+  LaserFindings laser;
 };
 
 }  // namespace oort

@@ -25,6 +25,13 @@ void declare_general(const Section& v, Parameters& p) {
   v(p.motion_compensation, "motion_compensation", true,
     "Whether the beams of a scan with a time_increment are brought to its stamp by odometry (docs/motion.md).")
       .own(false, "A scan that took 0.1 s while the robot turned at 1 rad/s is bent by 6 degrees otherwise.");
+  v(p.beam_order, "beam_order", {"auto", {"auto", "stamped", "reversed"}},
+    "In which order the beams of a scan with a time_increment were measured: as it says, the last one first, or as the "
+    "scans themselves show while the robot turns (docs/sensor.md).")
+      .own("stamped", "Drivers of clockwise lasers turn the beams round and keep their times.");
+  v(p.find_body, "find_body", true,
+    "Whether beams that see the robot itself are found, by their range that never changes, and left out.")
+      .own(false, "A home with 10 degrees of the robot's body at both edges of the view.");
   v(p.max_extrapolation, "max_extrapolation", {0.1, "s", {0.0, 1.0}},
     "How far beyond the last odometry a scan may lie where no more odometry comes: its motion goes on evenly.")
       .own(0.0, "The last scans of a drive count as well.");

@@ -282,6 +282,8 @@ struct Parameters {
   double time_update;
   bool global_slam_thread;
   bool motion_compensation;
+  std::string beam_order;
+  bool find_body;
   double max_extrapolation;
   bool use_imu;
   int min_pointcloud_size;

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from oort.simulate.drive import FAULTS, SCENES, Drive, SimulationConfig, simulate_drive
-from oort.simulate.sensor import Sensor
+from oort.simulate.sensor import DRIVERS, Sensor
 from oort.simulate.writers import write_drive
 
 
@@ -23,6 +23,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             beams=round(arguments.fov) if arguments.beams is None else arguments.beams,
             range_max=arguments.max_range,
             sweep_seconds=arguments.sweep,
+            driver=arguments.driver,
+            body=math.radians(arguments.body),
         )
         config = SimulationConfig(
             sensor,
@@ -35,6 +37,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             gyro=arguments.gyro,
             turn_error=arguments.turn_error,
             moved=arguments.moved,
+            rear=arguments.rear,
         )
         drive = simulate_drive(arguments.seed, config)
         name = arguments.name or f"{arguments.scene}_{arguments.seed}"
@@ -67,6 +70,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--beams", type=int, metavar="N", help="beams over it; one per degree if not given")
     parser.add_argument("--max-range", type=float, default=3.0, metavar="M", help="metres that the sensor sees")
     parser.add_argument("--sweep", type=float, default=0.0, metavar="S", help="seconds that a scan takes; then no .clf")
+    parser.add_argument("--driver", choices=DRIVERS, default=DRIVERS[0], help="how the sensor's driver tells scans")
+    parser.add_argument(
+        "--body", type=float, default=0.0, metavar="DEG", help="the robot seen at both edges of the view"
+    )
+    parser.add_argument("--rear", action="store_true", help="a second sensor looks back: /scan_rear in the bag")
     parser.add_argument("--gyro", action="store_true", help="the robot has a gyro: /imu in the bag")
     parser.add_argument("--minutes", type=float, default=3.0, help="drive on after the tour until about then")
     parser.add_argument("--no-person", dest="person", action="store_false", help="nobody crosses the view")

@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from oort.poses import Array, between
-from oort.simulate.drive import STEPS_PER_SCAN, Drive
+from oort.simulate.drive import REAR_STEPS, STEPS_PER_SCAN, Drive, rear_mount
 from oort.simulate.driver import STEP
 
 ODOM_FRAME, BASE_FRAME, SENSOR_FRAME = "odom", "base_footprint", "hokuyo_laser_link"
@@ -23,18 +24,20 @@ TOPICS = {
     "/scan": "sensor_msgs/msg/LaserScan",
 }
 IMU = "/imu"
+REAR, REAR_FRAME = "/scan_rear", "rear_laser_link"
 
 
 def write_bag(drive: Drive, path: Path) -> None:
     """Write /scan at 10 Hz, /tf (odom to base) and /odom at 50 Hz and once /tf_static (base to sensor), by stamp.
 
-    A robot with a gyro has /imu at 50 Hz as well.
+    A robot with a gyro has /imu at 50 Hz as well, one with a sensor that looks back /scan_rear at 10 Hz.
 
     The file must not exist yet. Of messages with the same stamp, transforms come first and the scan last.
     """
     store = get_typestore(Stores.ROS1_NOETIC)
     store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms\n", "tf2_msgs/msg/TFMessage"))
-    topics = TOPICS | {IMU: "sensor_msgs/msg/Imu"} if len(drive.gyro) else TOPICS
+    topics = TOPICS | ({IMU: "sensor_msgs/msg/Imu"} if len(drive.gyro) else {})
+    topics |= {REAR: TOPICS["/scan"]} if len(drive.rear_ranges) else {}
     with Writer(path) as writer:
         connections = {
             topic: writer.add_connection(
@@ -57,6 +60,9 @@ class _Messages:
         drive = self._drive
         stamps = [int(stamp) for stamp in drive.odometry_stamps]
         yield "/tf_static", stamps[0], self._transform(0, stamps[0], BASE_FRAME, SENSOR_FRAME, drive.T_base_sensor)
+        if len(drive.rear_ranges):
+            mount = np.array(rear_mount(drive.config.sensor))
+            yield "/tf_static", stamps[0], self._transform(0, stamps[0], BASE_FRAME, REAR_FRAME, mount)
         moved = between(drive.T_odom_base[:-1], drive.T_odom_base[1:]) / STEP
         speeds = np.vstack([np.zeros(3), moved])
         for seq, stamp in enumerate(stamps):
@@ -66,7 +72,9 @@ class _Messages:
             if len(drive.gyro):
                 yield IMU, stamp, self._imu(seq, stamp, float(drive.gyro[seq]))
             if seq % STEPS_PER_SCAN == 0:
-                yield "/scan", stamp, self._scan(seq // STEPS_PER_SCAN, stamp)
+                yield "/scan", stamp, self._scan(seq // STEPS_PER_SCAN, stamp, drive.ranges, SENSOR_FRAME)
+            if seq % STEPS_PER_SCAN == REAR_STEPS and seq // STEPS_PER_SCAN < len(drive.rear_ranges):
+                yield REAR, stamp, self._scan(seq // STEPS_PER_SCAN, stamp, drive.rear_ranges, REAR_FRAME)
 
     def _header(self, seq: int, stamp: int, frame: str) -> Any:
         time = self._types["builtin_interfaces/msg/Time"](sec=stamp // 10**9, nanosec=stamp % 10**9)
@@ -117,10 +125,10 @@ class _Messages:
             linear_acceleration_covariance=unknown,
         )
 
-    def _scan(self, index: int, stamp: int) -> Any:
+    def _scan(self, index: int, stamp: int, ranges: npt.NDArray[np.float32], frame: str) -> Any:
         drive = self._drive
         return self._types["sensor_msgs/msg/LaserScan"](
-            header=self._header(index, stamp, SENSOR_FRAME),
+            header=self._header(index, stamp, frame),
             angle_min=drive.angle_min,
             angle_max=drive.angle_min + (drive.ranges.shape[1] - 1) * drive.angle_increment,
             angle_increment=drive.angle_increment,
@@ -128,6 +136,6 @@ class _Messages:
             scan_time=STEP * STEPS_PER_SCAN,
             range_min=drive.range_min,
             range_max=drive.range_max,
-            ranges=drive.ranges[index],
+            ranges=ranges[index],
             intensities=np.empty(0, dtype=np.float32),
         )

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A drive, by default through a made-up home from the dock through all rooms and back, with its ground truth."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,7 @@ FAULTS = ("none", "freeze", "bump", "carried")
 START_STAMP = 1_600_000_000_000_000_000  # ns, of the first scan
 STEP_STAMP = round(STEP * 1e9)  # ns between odometry poses
 STEPS_PER_SCAN = 5  # 10 scans a second
+REAR_STEPS = 2  # from a scan to that of the sensor that looks back
 AFTER_DOCKING = 1.05  # s from standing on the dock to the call that tells so; falls between two scans
 
 
@@ -55,6 +56,9 @@ class SimulationConfig:
     """Whether the robot has a gyro."""
     turn_error: float = 1.0
     """One more factor on the errors of odometry's turns."""
+    rear: bool = False
+    """Whether a second sensor of the same kind looks back, from as far behind the base's middle; it takes its scans
+    two fifths of a period after the first."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be simulated."""
@@ -106,6 +110,9 @@ class Drive:
     """(n,) [ns]; every one is the stamp of an odometry pose too."""
     ranges: npt.NDArray[np.float32]
     """(n, beams) [m] in whole millimetres, infinite for no return."""
+    rear_ranges: npt.NDArray[np.float32]
+    """(n - 1, beams) of a sensor that looks back, at the odometry poses REAR_STEPS after the scans; (0, beams) if there
+    is none."""
     odometry_stamps: npt.NDArray[np.int64]
     """(m,) [ns]"""
     T_odom_base: Array
@@ -215,6 +222,7 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
         home=course.home.moved(T_map_plan),
         scan_stamps=odometry_stamps[::STEPS_PER_SCAN],
         ranges=measure(config.sensor, *true, sensor_rng),
+        rear_ranges=_measure_behind(config, all_poses, course.home, legs, sensor_rng),
         odometry_stamps=odometry_stamps,
         T_odom_base=odometry,
         T_odom_base_at_scans=odometry[::STEPS_PER_SCAN],
@@ -227,9 +235,28 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
     )
 
 
+def rear_mount(sensor: Sensor) -> tuple[float, float, float]:
+    """T_base_sensor of a sensor that looks back."""
+    x, y, heading = sensor.mount
+    return -x, y, heading + np.pi
+
+
+def _measure_behind(
+    config: SimulationConfig, all_poses: Array, home: Home, legs: Array, rng: Rng
+) -> npt.NDArray[np.float32]:
+    if not config.rear:
+        return np.empty((0, config.sensor.beams), dtype=np.float32)
+    sensor = replace(config.sensor, mount=rear_mount(config.sensor))
+    poses = all_poses[REAR_STEPS:]
+    eyes = compose(poses[::STEPS_PER_SCAN], sensor.mount) if sensor.sweep_seconds == 0.0 else _sweeping(sensor, poses)
+    true = cast_drive(sensor, eyes, home.segments, home.discs, legs[: len(eyes)], person.LEG_RADIUS)
+    return measure(sensor, *true, rng)
+
+
 def _sweeping(sensor: Sensor, poses: Array) -> Array:
     """The sensor's poses (n, beams, 3) at the beams of each scan from the base's at each step; at the end it stands."""
-    steps = np.arange(sensor.beams) * sensor.time_increment / STEP
+    order = np.arange(sensor.beams)[:: -1 if sensor.driver == "turned-round" else 1]
+    steps = order * sensor.time_increment / STEP
     at = np.arange(0, len(poses), STEPS_PER_SCAN)[:, None] + steps
     before = np.minimum(at.astype(np.int64), len(poses) - 1)
     after = np.minimum(before + 1, len(poses) - 1)

@@ -10,6 +10,9 @@ import numpy.typing as npt
 from oort.poses import Array
 
 LONGEST_SWEEP = 0.1  # s, from scan to scan
+DRIVERS = ("true", "turned-round", "mirrored")
+BODY_RANGE = 0.16  # m, of the robot's own body where the sensor sees it
+BODY_NOISE = 0.003  # m
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,11 @@ class Sensor:
     """T_base_sensor: x [m], y [m], heading [rad]"""
     sweep_seconds: float = 0.0
     """[s], at most the time from scan to scan"""
+    driver: str = "true"
+    """One of DRIVERS, which tells the scans: truly; of a clockwise sensor, whose beams it turns round while it keeps
+    their times; or mirrored, each beam at the bearing of the one across."""
+    body: float = 0.0
+    """[rad] at either edge of the view where the sensor sees nothing but the robot itself"""
 
     def __post_init__(self) -> None:
         """Refuse what no sensor has."""
@@ -52,6 +60,10 @@ class Sensor:
             raise ValueError(f"{self.beams} beams: choose at least 2")
         if not 0.0 <= self.sweep_seconds <= LONGEST_SWEEP:
             raise ValueError(f"a sweep of {self.sweep_seconds:g} s: choose one of 0 to {LONGEST_SWEEP:g}")
+        if self.driver not in DRIVERS:
+            raise ValueError(f"driver {self.driver!r}: choose one of {', '.join(DRIVERS)}")
+        if not 0.0 <= self.body < 0.5 * self.field_of_view:
+            raise ValueError(f"{np.degrees(self.body):g} degrees of body: choose less than half of the view")
         if not 0.0 < self.range_min < self.range_max < np.inf:
             raise ValueError(
                 f"ranges from {self.range_min:g} m to {self.range_max:g} m: choose a maximum above the minimum"
@@ -162,7 +174,14 @@ def measure(sensor: Sensor, true: Array, incidence: Array, rng: np.random.Genera
     noisy = r + (sensor.noise + sensor.noise_per_metre * r) * rng.standard_normal(true.shape)
     told = np.round(noisy, 3)
     returned &= (told >= sensor.range_min) & (told < sensor.range_max)
-    return np.where(returned, told, np.inf).astype(np.float32)
+    ranges = np.where(returned, told, np.inf)
+    own = round(sensor.body / sensor.angle_increment)
+    if own:
+        body = BODY_RANGE + BODY_NOISE * rng.standard_normal((len(ranges), 2 * own))
+        ranges[:, :own], ranges[:, -own:] = body[:, :own], body[:, own:]
+    if sensor.driver == "mirrored":
+        ranges = ranges[:, ::-1]
+    return np.ascontiguousarray(ranges, dtype=np.float32)
 
 
 def _mix_pixels(sensor: Sensor, true: Array, rng: np.random.Generator) -> Array:
