@@ -48,6 +48,9 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         "graph solve",
         "migrate",
         "merge",
+        "batch",
+        "compare",
+        "export",
         "parameters table",
     ],
 )

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 _TOOLS = {
     "replay": "map a recorded drive",
+    "batch": "map many recordings in parallel",
     "localize": "follow a recorded drive on a saved map",
     "render": "draw a saved map as pictures for map_server",
     "export": "write a saved map in the formats of other programs",

@@ -20,12 +20,12 @@ _END = "</script>"
 
 def make_page(template: str, scripts: Sequence[str], title: str, data: Mapping[str, Any]) -> bytes:
     """A page from a template of ``web/``, with styles, libraries, scripts and data within."""
-    page = _asset(template)
+    page = asset(template)
     parts = {
         "title": html.escape(title),
-        "styles": "\n".join(_asset(name) for name in _STYLES),
+        "styles": "\n".join(asset(name) for name in _STYLES),
         "data": f"{_DATA}{_json(data)}{_END}",
-        "scripts": "\n".join(f"<script>\n{_asset(name)}\n{_END}" for name in (*_LIBRARIES, *scripts)),
+        "scripts": "\n".join(f"<script>\n{asset(name)}\n{_END}" for name in (*_LIBRARIES, *scripts)),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], page).encode()
 
@@ -67,7 +67,8 @@ def _finite(value: Any) -> Any:
     return value
 
 
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
+    """A file of ``web/`` as text."""
     text = (files("oort.report") / "web" / name).read_text(encoding="utf-8")
     # Pictures and behaviours of old browsers, which nothing on the page uses, would be looked for beside it.
     return re.sub(r"^.*url\(.*\);\n", "", text, flags=re.M) if name.endswith(".css") else text
