@@ -32,7 +32,7 @@ from tf2_msgs.msg import TFMessage
 from accuracy import describe
 from node.client import Client, Heard, figures, until
 from node.running import Core, Node, start_core
-from oort.node.messages import FastGrid
+from oort.node.middleware.rospy_messages import FastGrid
 from oort.simulate import SimulationConfig, simulate_drive
 from oort.simulate.bag import write_bag
 

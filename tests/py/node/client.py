@@ -17,6 +17,7 @@ from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
 from node.running import Core, Node
+from oort.node.middleware.rospy import Rospy
 
 SERVICES = {
     "map/start": srv.SetString,
@@ -53,6 +54,11 @@ def until(condition: Callable[[], object], what: str, timeout: float = 10.0) -> 
     while not condition():
         assert time.monotonic() < deadline, f"not within {timeout:g} s: {what}"
         time.sleep(0.01)
+
+
+def this_process() -> Rospy:
+    """The middleware of the test's own process, which the fixture `rospy` makes a node."""
+    return object.__new__(Rospy)  # its constructor would make another
 
 
 class Client:

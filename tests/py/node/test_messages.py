@@ -23,10 +23,12 @@ from rosbags.highlevel import AnyReader
 from sensor_msgs.msg import LaserScan
 
 from helpers.recording_files import Bag, roll_yaw_quaternion
+from node.client import this_process
 from oort import LaserScan as Scan2d
 from oort import Mapper, Parameters, render_map
 from oort.errors import InputError
 from oort.node import messages
+from oort.node.middleware.rospy_messages import FastGrid, FastMapResponse
 from oort.recording import Scan, open_recording
 from oort.recording.motion import Placement
 
@@ -48,10 +50,10 @@ def fill(message: OccupancyGrid, frame: str, width: int, height: int) -> None:
     message.info.origin.position.x, message.info.origin.orientation.w = -3.25, 1.0
 
 
-def both_grids(frame: str, width: int, height: int) -> tuple[messages.FastGrid, OccupancyGrid]:
+def both_grids(frame: str, width: int, height: int) -> tuple[FastGrid, OccupancyGrid]:
     """The same grid in Oort's class and in the generated one."""
     cells = np.random.default_rng(width).choice(np.array([-1, 0, 100], dtype=np.int8), size=width * height)
-    fast, generated = messages.FastGrid(), OccupancyGrid()
+    fast, generated = FastGrid(), OccupancyGrid()
     fill(fast, frame, width, height)
     fill(generated, frame, width, height)
     fast.data, generated.data = cells, cells.tolist()
@@ -62,12 +64,12 @@ def both_grids(frame: str, width: int, height: int) -> tuple[messages.FastGrid, 
 def test_a_grid_is_written_as_the_generated_class_writes_it(frame: str, width: int, height: int) -> None:
     fast, generated = both_grids(frame, width, height)
     assert written(fast) == written(generated)
-    assert written(messages.map_reply(fast)) == written(GetMapResponse(map=generated))
+    assert written(FastMapResponse(map=fast)) == written(GetMapResponse(map=generated))
 
 
 def test_a_grid_that_was_read_can_be_written_again() -> None:
     _, generated = both_grids("map", 8, 5)
-    again = messages.FastGrid().deserialize(written(generated))
+    again = FastGrid().deserialize(written(generated))
     assert again.data == tuple(generated.data)
     assert written(again) == written(generated)
 
@@ -80,7 +82,7 @@ def test_cells_of_another_kind_are_refused_as_ever() -> None:
 
 
 def test_the_type_is_that_of_the_generated_class() -> None:
-    for fast, generated in ((messages.FastGrid, OccupancyGrid), (messages.FastMapResponse, GetMapResponse)):
+    for fast, generated in ((FastGrid, OccupancyGrid), (FastMapResponse, GetMapResponse)):
         assert (fast._type, fast._md5sum, fast._full_text) == (
             generated._type,
             generated._md5sum,
@@ -102,7 +104,7 @@ def test_large_grids_do_not_stall_the_node() -> None:
 
     plain = best(lambda: written(generated))
     assert best(lambda: written(fast)) < plain / 5
-    assert best(lambda: written(messages.map_reply(fast))) < plain / 5
+    assert best(lambda: written(FastMapResponse(map=fast))) < plain / 5
 
 
 def test_a_rendered_map_becomes_a_message() -> None:
@@ -110,7 +112,7 @@ def test_a_rendered_map_becomes_a_message() -> None:
     mapper.add_scan(Scan2d(np.linspace(1.0, 2.0, 150), -1.5, 0.02, 0.1, 5.0), (0.0, 0.0, 0.0))
     grid, _ = render_map(mapper.map(), Parameters())
     assert grid.width != grid.height  # else a mix-up would go unseen
-    message = messages.grid_message(grid, "map", STAMP)
+    message = messages.place_grid(this_process().grid(grid), grid, "map", STAMP)
     assert message.header.frame_id == "map"
     assert message.header.stamp == message.info.map_load_time == STAMP
     assert (message.info.width, message.info.height) == (grid.width, grid.height)
@@ -128,7 +130,7 @@ def test_a_grid_arrives_whole_over_a_latched_topic_and_a_service(rospy: Any) -> 
     publisher.publish(fast)
     received = rospy.wait_for_message("~fast_grid", OccupancyGrid, timeout=20)
     publisher.unregister()
-    service = rospy.Service("~fast_map", GetMap, lambda _: messages.map_reply(fast))
+    service = rospy.Service("~fast_map", GetMap, lambda _: FastMapResponse(map=fast))
     answer = rospy.ServiceProxy("~fast_map", GetMap)().map
     service.shutdown()
     for message in (received, answer):

@@ -13,12 +13,12 @@ from geometry_msgs.msg import Pose2D
 from nav_msgs.msg import OccupancyGrid
 
 from helpers.scenes import room_scan
-from node.client import Client, Heard, HeardTransforms, until
+from node.client import Client, Heard, HeardTransforms, this_process, until
 from node.conftest import NodeFactory
 from node.robot import SHORT, Localiser, Robot
 from node.running import Core
 from oort import ParameterError, Parameters
-from oort.node.settings import read_settings
+from oort.node.settings import Settings, read_settings
 from oort.session import Session
 
 pytestmark = pytest.mark.usefixtures("rospy")
@@ -148,18 +148,22 @@ def test_it_does_not_begin(node: NodeFactory, argument: str, told: str) -> None:
 
 @pytest.fixture
 def parameter(ros: Core) -> Iterator[Callable[[str, Any], None]]:
-    """Sets a private ROS parameter of the test's own process, for which read_settings() then works."""
+    """Sets a private ROS parameter of the test's own process, which read_settings() then reads."""
     yield lambda name, value: ros.set_parameter(f"/oort_tests/{name}", value)
     ros.forget_parameters()
 
 
+def settings_of_this_process() -> Settings:
+    return read_settings(this_process(), ["load", "events_log"])
+
+
 def test_settings(parameter: Callable[[str, Any], None]) -> None:
-    assert read_settings().parameters.to_dict() == Parameters().to_dict()
+    assert settings_of_this_process().parameters.to_dict() == Parameters().to_dict()
     parameter("linear_update", 0.5)
     parameter("output_map/robot_radius", 1)  # rosparam makes an integer of "1"
     parameter("load", "/maps/7")
-    settings = read_settings()
-    assert (settings.load, settings.events_log) == ("/maps/7", "")
+    settings = settings_of_this_process()
+    assert (settings.own["load"], settings.own["events_log"]) == ("/maps/7", "")
     assert settings.parameters.get("linear_update") == 0.5
     assert settings.parameters.get("output_map.robot_radius") == 1.0
 
@@ -179,5 +183,5 @@ def test_settings(parameter: Callable[[str, Any], None]) -> None:
 def test_settings_that_cannot_be(parameter: Callable[[str, Any], None], name: str, value: Any, told: str) -> None:
     parameter(name, value)
     with pytest.raises(ParameterError, match=told) as caught:
-        read_settings()
+        settings_of_this_process()
     assert name.rpartition("/")[2] in str(caught.value)

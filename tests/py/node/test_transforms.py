@@ -12,6 +12,7 @@ import rospy
 from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from sensor_msgs.msg import Imu
 
+from node.client import this_process
 from oort import Parameters
 from oort.live import UnusableScanError
 from oort.node.messages import transform
@@ -30,7 +31,7 @@ def told() -> list[None]:
 
 @pytest.fixture
 def transforms(told: list[None]) -> Transforms:
-    return Transforms(Parameters(), lambda: told.append(None))
+    return Transforms(Parameters(), lambda: told.append(None), this_process())
 
 
 def odometry(stamp: float, pose: Pose, parent: str = "odom", child: str = "base_footprint") -> TransformStamped:
@@ -83,7 +84,7 @@ def test_a_laser_by_a_moving_link(transforms: Transforms, told: list[None]) -> N
 
 def test_a_laser_that_moves_is_told_once(transforms: Transforms, monkeypatch: pytest.MonkeyPatch) -> None:
     warnings: list[str] = []
-    monkeypatch.setattr("oort.node.transforms.rospy.logwarn", lambda text, *args: warnings.append(text % args))
+    monkeypatch.setattr("oort.node.transforms.log.warning", lambda text, *args: warnings.append(text % args))
     transforms.set_transform(laser(), "robot")
     mount = transforms.mount(LASER)
     for x in (0.11, 0.2, 0.3):
@@ -122,7 +123,7 @@ def test_a_gyro(told: list[None]) -> None:
     """An IMU that hangs upside down on a robot that stands for two seconds and then turns, untold by its wheels."""
     parameters = Parameters()
     parameters.set("use_imu", True)
-    transforms = Transforms(parameters, lambda: told.append(None))
+    transforms = Transforms(parameters, lambda: told.append(None), this_process())
     assert not transforms.imu_trouble()
     transforms.add_imu(imu(99.0, (0.0, 0.0, 1.0)))  # before tf tells how it sits
     transforms.set_transform_static(laser(), "robot")
@@ -145,10 +146,10 @@ def test_a_gyro(told: list[None]) -> None:
 
 def test_an_imu_that_moves_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
     warnings: list[str] = []
-    monkeypatch.setattr("oort.node.transforms.rospy.logwarn", lambda text, *args: warnings.append(text % args))
+    monkeypatch.setattr("oort.node.transforms.log.warning", lambda text, *args: warnings.append(text % args))
     parameters = Parameters()
     parameters.set("use_imu", True)
-    transforms = Transforms(parameters, lambda: None)
+    transforms = Transforms(parameters, lambda: None, this_process())
     for turned in (0.0, 0.001, 0.5, 1.0):
         transforms.set_transform(odometry(1.0, (0.0, 0.0, turned), "base_footprint", "imu"), "robot")
         transforms.add_imu(imu(100.0 + turned, (0.0, 0.0, 1.0)))
@@ -160,7 +161,7 @@ def test_a_gyro_whose_transform_comes_late(monkeypatch: pytest.MonkeyPatch) -> N
     """It is taken to sit level only after a while, and only until tf tells that it hangs upside down."""
     parameters = Parameters()
     parameters.set("use_imu", True)
-    transforms = Transforms(parameters, lambda: None)
+    transforms = Transforms(parameters, lambda: None, this_process())
     rates: list[float] = []
     monkeypatch.setattr("oort.live.odometry.Odometry.add_gyro", lambda _self, _stamp, rate: rates.append(rate))
     now = [time.monotonic()]

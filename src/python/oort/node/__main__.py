@@ -4,38 +4,32 @@
 
 import sys
 
-try:
-    import rospy
-    import tf2_ros  # noqa: F401
-except ImportError as error:
-    sys.exit(
-        f"oort_ros: {error}. The node needs Debian's ROS packages (scripts/setup.sh --ros) and a Python made from "
-        f"/usr/bin/python3 with its site packages; this is {sys.executable}"
-    )
-
 from oort.events import EventLog
-from oort.node.node import Node
-from oort.node.running import run_node
+from oort.node.logs import log
+from oort.node.middleware import Middleware, find
+from oort.node.running import Closable, run_node
 from oort.node.settings import read_settings
 
 
-def _begin() -> Node:
-    settings = read_settings()
-    event_log = EventLog(settings.events_log) if settings.events_log else None
-    node = Node(settings.parameters, event_log, settings.limits)
+def _begin(middleware: Middleware) -> Closable:
+    from oort.node.node import Node  # needs the messages of a ROS, of which main() has made sure
+
+    settings = read_settings(middleware, ["load", "events_log"])
+    events, load = settings.own["events_log"], settings.own["load"]
+    node = Node(middleware, settings.parameters, EventLog(events) if events else None, settings.limits)
     try:
-        if settings.load:
-            node.live.call("map/load", [settings.load])
+        if load:
+            node.live.call("map/load", [load])
     except BaseException:
         node.close()
         raise
-    rospy.loginfo("%s is ready; mapping begins with %s/map/start", rospy.get_name(), rospy.get_name())
+    log.info("%s is ready; mapping begins with %s/map/start", middleware.name, middleware.name)
     return node
 
 
 def main() -> int:
     """Runs the node until it is told to end, then saves the map; exit code 2 if it cannot begin."""
-    return run_node("oort_slam", _begin)
+    return run_node(find("oort_ros")("oort_slam"), _begin)
 
 
 if __name__ == "__main__":

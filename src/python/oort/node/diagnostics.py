@@ -5,13 +5,15 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-import genpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from oort.live.window import Spread
 
-WARN, ERROR = DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+OK, WARN, ERROR = range(3)
+"""Levels. ROS 1 has the same numbers, ROS 2 bytes."""
+_LEVELS = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
 _SILENCE = 2.0  # [s] without a scan
 _PATIENCE = 1.0  # [s] that a scan waits for its transform
@@ -108,15 +110,15 @@ class Health(ABC):
         yield "waiting for", (self.waiting_for if self.waiting_scans else "") or "-"
 
 
-def diagnostic_array(health: Health, node_name: str, stamp: genpy.Time) -> DiagnosticArray:
+def diagnostic_array(health: Health, node_name: str, stamp: Any) -> DiagnosticArray:
     """The message, with one status: "<node>: <what it does>"."""
     problems = sorted(health.problems(), key=lambda problem: -problem[0])  # the worst first, else as they are found
     status = DiagnosticStatus(
-        level=problems[0][0] if problems else DiagnosticStatus.OK,
+        level=_LEVELS[problems[0][0] if problems else OK],
         name=f"{node_name.lstrip('/')}: {health.part}",
         message=". ".join(sentence for _, sentence in problems) or health.all_well,
         hardware_id="oort",
-        values=[KeyValue(key, value) for key, value in health.figures()],
+        values=[KeyValue(key=key, value=value) for key, value in health.figures()],
     )
     message = DiagnosticArray(status=[status])
     message.header.stamp = stamp

@@ -5,13 +5,12 @@
 from collections.abc import Callable
 from functools import partial
 
-import rospy
 from sensor_msgs.msg import LaserScan
 
 from oort.live import UnusableScanError
 from oort.live.inbox import Resolve
-from oort.node.messages import to_scan
-from oort.node.running import COMPLAIN
+from oort.node.logs import Seldom, once
+from oort.node.messages import stamp_parts, to_scan
 from oort.node.transforms import Transforms
 from oort.recording import Pose, Scan
 from oort.recording.laser_scan import seconds
@@ -37,6 +36,7 @@ class Laser:
         self._compensates_motion = compensates_motion
         self._found = found
         self._limits = limits
+        self._say_frame, self._say_increment = once(), Seldom()
         self.frame = ""
         """its frame, once it is known"""
 
@@ -45,7 +45,7 @@ class Laser:
 
         The second does so of what is known, when no more will come.
         """
-        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+        stamp = seconds(*stamp_parts(message.header.stamp))
         span = self._span(message)
 
         def resolve(last_resort: bool = False) -> Scan | None:
@@ -68,19 +68,16 @@ class Laser:
         """The frame whose scans are used or, before one could be, wait: ``expected``, unless they come in another."""
         if self.frame or sensor_frame == expected:
             return self.frame or expected
-        rospy.logwarn_once(
-            "the scans are in frame %s, not in the sensor_frame %s of the parameters; using %s",
-            sensor_frame,
-            expected,
-            sensor_frame,
+        self._say_frame(
+            f"the scans are in frame {sensor_frame}, not in the sensor_frame {expected} of the parameters; using "
+            f"{sensor_frame}"
         )
         return sensor_frame
 
     def _span(self, message: LaserScan) -> tuple[float, float]:
         span = beam_span(len(message.ranges), message.time_increment) if self._compensates_motion else SNAPSHOT
         if span is None:
-            rospy.logwarn_throttle(
-                COMPLAIN,
-                f"a time_increment of {message.time_increment} s cannot be: the beams are taken as measured at once",
+            self._say_increment(
+                f"a time_increment of {message.time_increment} s cannot be: the beams are taken as measured at once"
             )
         return span or SNAPSHOT

@@ -5,10 +5,9 @@
 import json
 from pathlib import Path
 
-import rospy
-
 from oort.errors import OortError
 from oort.export.files import write_atomically
+from oort.node.logs import log, once
 from oort.recording import Pose
 
 
@@ -18,6 +17,7 @@ class LastPose:
     def __init__(self, base: str) -> None:
         """Of the map with this base path."""
         self.path = Path(base + ".last_pose.json")
+        self._complain = once()
 
     def read(self) -> Pose | None:
         """None if there is none that can be used; a file that cannot be read is warned of."""
@@ -26,7 +26,7 @@ class LastPose:
         except FileNotFoundError:
             return None
         except (OSError, ValueError, KeyError, TypeError) as error:
-            rospy.logwarn("%s cannot be used: %s", self.path, error)
+            log.warning("%s cannot be used: %s", self.path, error)
             return None
         return x, y, theta
 
@@ -35,4 +35,4 @@ class LastPose:
         try:
             write_atomically(self.path, (json.dumps({"T_map_sensor": T_map_sensor}) + "\n").encode())
         except OortError as error:
-            rospy.logwarn_once("the pose is not kept for the next start: %s", error)
+            self._complain(f"the pose is not kept for the next start: {error}")

@@ -4,10 +4,10 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import Any
 
-import genpy
 import numpy as np
-from geometry_msgs.msg import Point, Vector3
+from geometry_msgs.msg import Point
 from numpy.typing import NDArray
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
@@ -20,23 +20,23 @@ _ODOMETRY = 1  # the type of an edge whose scan match was rejected
 _BELIEVED = 0.5  # a link whose switch is below it counts as contradicted
 
 # Each kind lies a little higher than the one before it, so that what overlaps does not flicker.
-_CHAIN = ("chain", ColorRGBA(0.25, 0.45, 0.9, 1.0), 0.01)
-_BY_ODOMETRY = ("chain by odometry", ColorRGBA(1.0, 0.6, 0.0, 1.0), 0.02)
-_CONTRADICTED = ("closures contradicted", ColorRGBA(0.9, 0.1, 0.1, 1.0), 0.03)
-_CLOSURES = ("closures", ColorRGBA(0.1, 0.75, 0.2, 1.0), 0.04)
-_NODES = ("nodes", ColorRGBA(0.1, 0.2, 0.55, 1.0), 0.05)
-_PLACES = ("places", ColorRGBA(0.75, 0.1, 0.75, 1.0), 0.06)
-_NAMES = ("place names", ColorRGBA(0.3, 0.0, 0.3, 1.0), 0.3)
+_CHAIN = ("chain", (0.25, 0.45, 0.9, 1.0), 0.01)
+_BY_ODOMETRY = ("chain by odometry", (1.0, 0.6, 0.0, 1.0), 0.02)
+_CONTRADICTED = ("closures contradicted", (0.9, 0.1, 0.1, 1.0), 0.03)
+_CLOSURES = ("closures", (0.1, 0.75, 0.2, 1.0), 0.04)
+_NODES = ("nodes", (0.1, 0.2, 0.55, 1.0), 0.05)
+_PLACES = ("places", (0.75, 0.1, 0.75, 1.0), 0.06)
+_NAMES = ("place names", (0.3, 0.0, 0.3, 1.0), 0.3)
 
 _LINE_WIDTH = 0.02  # [m]
 _NODE_SIZE = 0.05  # [m]
 _ARROW = (0.4, 0.08, 0.05)  # length, width, height [m]
 _TEXT_HEIGHT = 0.22  # [m]
 
-_Kind = tuple[str, ColorRGBA, float]  # namespace, colour, height [m]
+_Kind = tuple[str, tuple[float, float, float, float], float]  # namespace, colour, height [m]
 
 
-def graph_markers(map_: Map, places: Sequence[tuple[str, str, Pose]], frame: str, stamp: genpy.Time) -> MarkerArray:
+def graph_markers(map_: Map, places: Sequence[tuple[str, str, Pose]], frame: str, stamp: Any) -> MarkerArray:
     """All of a map's graph and the places (namespace, id, pose in the map); what was shown before is deleted.
 
     A kind of which there is nothing gets no marker. Links that the optimiser has switched off are red.
@@ -51,7 +51,7 @@ def graph_markers(map_: Map, places: Sequence[tuple[str, str, Pose]], frame: str
         _lines(_CLOSURES, points, closures["i"][believed], closures["j"][believed]),
         _marker(_NODES, Marker.SPHERE_LIST, (_NODE_SIZE,) * 3, points=points),
     ]
-    message = MarkerArray([Marker(action=Marker.DELETEALL), *(marker for marker in markers if marker.points)])
+    message = MarkerArray(markers=[Marker(action=Marker.DELETEALL), *(marker for marker in markers if marker.points)])
     for number, place in enumerate(sorted(places)):
         message.markers.extend(_place(number, *place))
     for marker in message.markers:
@@ -78,10 +78,15 @@ def _place(number: int, name_space: str, id_: str, pose: Pose) -> tuple[Marker, 
 
 def _marker(kind: _Kind, shape: int, scale: tuple[float, float, float], **fields: object) -> Marker:
     name_space, colour, height = kind
-    marker = Marker(ns=name_space, type=shape, action=Marker.ADD, scale=Vector3(*scale), color=colour, **fields)
+    marker = Marker(ns=name_space, type=shape, action=Marker.ADD, color=_colour(*colour), **fields)
+    marker.scale.x, marker.scale.y, marker.scale.z = scale
     marker.pose.position.z = height
     marker.pose.orientation.w = 1.0
     return marker
+
+
+def _colour(red: float, green: float, blue: float, alpha: float) -> ColorRGBA:
+    return ColorRGBA(r=red, g=green, b=blue, a=alpha)
 
 
 def _point(x: float, y: float) -> Point:

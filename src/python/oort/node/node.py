@@ -1,13 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS 1 node: topics and transforms around a live session."""
+"""The mapping node: topics and transforms around a live session."""
 
 import threading
 import time
 from collections.abc import Callable
+from typing import Any
 
-import rospy
-import tf2_ros
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import Imu, LaserScan
@@ -22,9 +21,11 @@ from oort.live.saver import NAMES
 from oort.node.diagnostics import diagnostic_array
 from oort.node.health import look_over
 from oort.node.laser import Laser
+from oort.node.logs import Seldom, log
 from oort.node.markers import graph_markers
-from oort.node.messages import grid_message, transform
-from oort.node.running import COMPLAIN, repeat
+from oort.node.messages import place_grid, transform
+from oort.node.middleware import Middleware, Quality
+from oort.node.running import repeat
 from oort.node.services import Services
 from oort.node.transforms import Transforms, frame
 from oort.recording import Pose
@@ -38,41 +39,53 @@ _HEALTH_PERIOD = 1.0  # [s]
 class Node(Listener):
     """Topics in, topics out. The callbacks of subscribers only put things into the session's queue."""
 
-    def __init__(self, parameters: Parameters, event_log: EventLog | None, limits: ScanLimits = NO_LIMITS) -> None:
+    def __init__(
+        self,
+        middleware: Middleware,
+        parameters: Parameters,
+        event_log: EventLog | None,
+        limits: ScanLimits = NO_LIMITS,
+    ) -> None:
         """Advertises, subscribes, and offers the services; mapping begins with map/start."""
+        self._middleware = middleware
         self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
         self._sensor_frame = frame(parameters, "sensor")
-        self._last_tf = rospy.Time()
+        self._last_tf = 0  # [ns]
         self._tf_lock = threading.Lock()
 
-        self._map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
-        self._map_cleaned = rospy.Publisher("map_cleaned", OccupancyGrid, queue_size=1, latch=True)
-        self._queue_size = rospy.Publisher("~queue_size", Int64, queue_size=10)
-        self._file_changed = rospy.Publisher("~file_changed", String, queue_size=10)
-        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
-        self._broadcaster = tf2_ros.TransformBroadcaster()
+        self._map = middleware.publisher("map", OccupancyGrid, Quality.LATCHED)
+        self._map_cleaned = middleware.publisher("map_cleaned", OccupancyGrid, Quality.LATCHED)
+        self._queue_size = middleware.publisher("~queue_size", Int64, Quality.STREAM)
+        self._file_changed = middleware.publisher("~file_changed", String, Quality.STREAM)
+        self._diagnostics = middleware.publisher("/diagnostics", DiagnosticArray, Quality.STREAM)
 
-        self._transforms = Transforms(parameters, self._poke)
+        self._say_waiting, self._say_imu = Seldom(), Seldom()
+        self._transforms = Transforms(parameters, self._poke, middleware)
         self._laser = Laser(self._transforms, bool(parameters.get("motion_compensation")), self._laser_found, limits)
         self.live = LiveSession(
-            parameters, self, clock=rospy.get_time, localiser=self._sensor_on_map, event_log=event_log
+            parameters,
+            self,
+            clock=lambda: middleware.now() / 1e9,
+            localiser=self._sensor_on_map,
+            event_log=event_log,
         )
-        self._graph = rospy.Publisher("~graph", MarkerArray, self._graph_wanted(), queue_size=1)
-        self._services = Services(self.live, self._map_frame)
-        self._listener = tf2_ros.TransformListener(self._transforms, tcp_nodelay=True)
-        self._scans = rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
+        # Only who looks at the graph costs its drawing, so that a late one is served when it comes.
+        self._graph = middleware.publisher("~graph", MarkerArray, Quality.STREAM, on_subscriber=self._show_graph)
+        self._services = Services(self.live, middleware, self._map_frame)
+        middleware.subscribe_transforms(self._transforms.set_transform, self._transforms.set_transform_static)
+        self._scans = middleware.subscribe("scan", LaserScan, Quality.SENSOR, self._on_scan)
         if parameters.get("use_imu"):
-            rospy.Subscriber("imu", Imu, self._transforms.add_imu, tcp_nodelay=True)
+            middleware.subscribe("imu", Imu, Quality.SENSOR, self._transforms.add_imu)
         for period, work in (
             (_TF_PERIOD, self._tell_pose),
             (_QUEUE_PERIOD, self._tell_queue),
             (_HEALTH_PERIOD, self._tell_health),
         ):
-            threading.Thread(target=repeat, args=(period, work), daemon=True).start()
+            threading.Thread(target=repeat, args=(middleware, period, work), daemon=True).start()
 
     def close(self) -> None:
         """Saves the map."""
-        self._scans.unregister()
+        self._scans.close()
         self.live.close()
 
     # ---- what comes in ----
@@ -113,22 +126,22 @@ class Node(Listener):
         """The map was drawn, or is to be shown again."""
         if drawing.grid.cells.size == 0:
             return
-        stamp = rospy.Time.now()
-        self._map.publish(grid_message(drawing.grid, self._map_frame, stamp))
-        self._map_cleaned.publish(grid_message(drawing.cleaned, self._map_frame, stamp))
+        stamp = self._middleware.stamp(self._middleware.now())
+        for publisher, grid in ((self._map, drawing.grid), (self._map_cleaned, drawing.cleaned)):
+            publisher.publish(place_grid(self._middleware.grid(grid), grid, self._map_frame, stamp))
         self._tell_graph()
 
     def saved(self, what: Saved) -> None:
         """Files were written."""
-        self._file_changed.publish(NAMES[what])
+        self._file_changed.publish(String(data=NAMES[what]))
 
     def note(self, text: str) -> None:
         """Something that its owner should know."""
-        rospy.loginfo("%s", text)
+        log.info("%s", text)
 
     def trouble(self, text: str) -> None:
         """Something went wrong that no caller waits to hear of."""
-        rospy.logwarn("%s", text)
+        log.warning("%s", text)
 
     # ---- what goes out by itself ----
 
@@ -136,45 +149,38 @@ class Node(Listener):
         """map -> odom, dated one period ahead, so that a look-up for now finds it until the next one."""
         with self._tf_lock:
             pose = self.live.snapshot.odom_pose
-            stamp = rospy.Time.now() + rospy.Duration(_TF_PERIOD)
+            stamp = self._middleware.now() + round(1e9 * _TF_PERIOD)
             if pose is None or stamp == self._last_tf:
                 return  # where the clock stands, listeners complain of repeated data
             self._last_tf = stamp
-            self._broadcaster.sendTransform(transform(self._map_frame, self._odom_frame, stamp, pose))
+            self._middleware.send_transform(
+                transform(self._map_frame, self._odom_frame, self._middleware.stamp(stamp), pose)
+            )
 
     def _tell_queue(self) -> None:
-        self._queue_size.publish(len(self.live.inbox))
+        self._queue_size.publish(Int64(data=len(self.live.inbox)))
 
     def _tell_health(self) -> None:
         waiting, since = self.live.inbox.waiting()
         missing = self._transforms.missing(self._sensor_frame)
         if waiting and since > _HEALTH_PERIOD:
-            rospy.logwarn_throttle(COMPLAIN, f"{missing}; {waiting} scans waiting")
+            self._say_waiting(f"{missing}; {waiting} scans waiting")
         imu_trouble = self._transforms.imu_trouble()
         if imu_trouble:
-            rospy.logwarn_throttle(COMPLAIN, f"odometry's own turns are used: {imu_trouble}")
-        health = look_over(self.live, self._scans.resolved_name, missing, imu_trouble)
-        self._diagnostics.publish(diagnostic_array(health, rospy.get_name(), rospy.Time.now()))
+            self._say_imu(f"odometry's own turns are used: {imu_trouble}")
+        health = look_over(self.live, self._scans.topic, missing, imu_trouble)
+        stamp = self._middleware.stamp(self._middleware.now())
+        self._diagnostics.publish(diagnostic_array(health, self._middleware.name, stamp))
 
     # ---- the graph, for people to look at ----
 
-    def _graph_wanted(self) -> rospy.SubscribeListener:
-        """Only who looks at the graph costs its drawing, so that a late one is served when it comes."""
-        listener = rospy.SubscribeListener()
-        listener.peer_subscribe = self._on_graph_subscriber
-        return listener
-
-    def _on_graph_subscriber(
-        self, _name: str, publish_to_peer: Callable[[MarkerArray], None], _publish: Callable[[MarkerArray], None]
-    ) -> None:
-        self._show_graph(publish_to_peer)
-
     def _tell_graph(self) -> None:
-        if self._graph.get_num_connections() > 0:
+        if self._graph.is_wanted():
             self._show_graph(self._graph.publish)
 
-    def _show_graph(self, publish: Callable[[MarkerArray], None]) -> None:
+    def _show_graph(self, publish: Callable[[Any], None]) -> None:
         drawing = self.live.gallery.drawing
         if drawing is not None:
             places = [(space, id, pose) for (space, id), pose in self.live.snapshot.places.items()]
-            publish(graph_markers(drawing.map, places, self._map_frame, rospy.Time.now()))
+            stamp = self._middleware.stamp(self._middleware.now())
+            publish(graph_markers(drawing.map, places, self._map_frame, stamp))

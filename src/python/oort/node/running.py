@@ -9,12 +9,9 @@ import traceback
 from collections.abc import Callable
 from typing import Protocol
 
-import rospy
-
 from oort.errors import OortError
-
-COMPLAIN = 10.0
-"""[s] between two warnings about the same"""
+from oort.node.logs import Seldom, log
+from oort.node.middleware import Middleware
 
 
 class Closable(Protocol):
@@ -24,38 +21,38 @@ class Closable(Protocol):
         """Saves what is to be saved and ends."""
 
 
-def run_node(name: str, begin: Callable[[], Closable]) -> int:
+def run_node(middleware: Middleware, begin: Callable[[Middleware], Closable]) -> int:
     """Runs a node until it is told to end, then closes it; exit code 2 if it cannot begin or be closed."""
-    rospy.init_node(name, disable_signals=True)
-    # rospy's own handler talks to the master, which hangs for ever where this thread is just doing so.
+    # The middleware's own handlers may wait for this thread, or for a master that this thread talks to: for ever.
     told_to_end = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: told_to_end.set())
     try:
-        node = begin()
+        node = begin(middleware)
         try:
-            while not told_to_end.wait(0.1) and not rospy.is_shutdown():
+            while not told_to_end.wait(0.1) and middleware.is_running():
                 pass
         finally:
             node.close()
     except OortError as error:
-        rospy.logfatal("%s", error)
+        log.critical("%s", error)
         return 2
     finally:
-        rospy.signal_shutdown("the node ends")
+        middleware.close()
     return 0
 
 
-def repeat(period: float, work: Callable[[], None]) -> None:
+def repeat(middleware: Middleware, period: float, work: Callable[[], None]) -> None:
     """Does something every so many seconds as long as the node runs.
 
     By the wall's clock: a timer of ROS stands still without /clock and dies when it is set back.
     """
-    while not rospy.is_shutdown():
+    complain = Seldom(say=log.error)
+    while middleware.is_running():
         started = time.monotonic()
         try:
             work()
         except Exception:
-            if not rospy.is_shutdown():  # then the topics are closed
-                rospy.logerr_throttle(COMPLAIN, traceback.format_exc())
+            if middleware.is_running():  # then the topics are closed
+                complain(traceback.format_exc())
         time.sleep(max(0.0, period - (time.monotonic() - started)))

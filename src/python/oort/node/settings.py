@@ -1,15 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes' private ROS parameters: a few of their own, and any parameter of params.json by its path."""
+"""The nodes' ROS parameters: a few of their own, and any parameter of params.json by its path."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import rospy
-
 from oort._core import Parameters, unknown_parameter
 from oort.errors import ParameterError
+from oort.node.middleware import Middleware
 from oort.parameters import read_parameters
 from oort.parameters.reader import set_parameter
 from oort.recording.limits import ScanLimits
@@ -19,66 +18,59 @@ _LIMITS = ("min_range", "max_range", "mask")
 
 @dataclass(frozen=True)
 class Settings:
-    """How the node was asked to run."""
+    """How a node was asked to run."""
 
     parameters: Parameters
-    load: str
-    """a saved map to begin with; empty for none"""
-    events_log: str
-    """where to write the events file; empty for nowhere"""
+    own: dict[str, str]
+    """the texts of the node's own parameters, empty where not given"""
     limits: ScanLimits
     """which readings of the laser count"""
 
 
-def read_settings() -> Settings:
-    """Reads the private parameters. Raises ParameterError for one that is unknown, naming the nearest known one."""
-    parameters, own = read_private(["load", "events_log"])
-    return Settings(parameters, own["load"], own["events_log"], read_limits())
+def read_settings(middleware: Middleware, names: Sequence[str]) -> Settings:
+    """Reads the node's parameters, ``names`` being its own.
 
-
-def read_private(names: Sequence[str]) -> tuple[Parameters, dict[str, str]]:
-    """The parameters of params.json, and the texts of a node's own private parameters, empty where not given.
-
-    Raises ParameterError for a private parameter that is unknown, naming the nearest known one.
+    Raises ParameterError for one that is unknown, naming the nearest known one.
     """
-    private = rospy.get_param("~", {})
-    own = {name: private.pop(name, "") for name in ["params", *names]}
-    for name in _LIMITS:
-        private.pop(name, None)  # see read_limits()
+    given = middleware.parameters()
+    own = {name: given.pop(name, "") for name in ["params", *names]}
+    limits = _read_limits(middleware, {name: given.pop(name) for name in _LIMITS if name in given})
     for name, value in own.items():
-        if not isinstance(value, str):
-            raise ParameterError(f"~{name} must be a text, such as a path, not {value!r}")
+        inner = {path: given[path] for path in given if path.startswith(f"{name}.")}
+        if inner or not isinstance(value, str):
+            value = inner or value
+            raise ParameterError(f"{middleware.parameter_name(name)} must be a text, such as a path, not {value!r}")
     parameters = read_parameters(own["params"] or None)
     known = parameters.to_dict()
-    for path, value in _flatten(private):
+    for path, value in given.items():
         try:
             if path not in known:
                 raise ParameterError(unknown_parameter(path))
             set_parameter(parameters, path, value)
         except ParameterError as error:
-            name = rospy.resolve_name("~" + path.replace(".", "/"))
+            name = middleware.resolve(middleware.parameter_name(path))
             raise ParameterError(f"ROS parameter {name}: {error}") from error
     parameters.check()
-    return parameters, own
+    middleware.show_parameters({**own, **parameters.to_dict()})
+    return Settings(parameters, own, limits)
 
 
-def read_limits() -> ScanLimits:
-    """The private parameters ~min_range, ~max_range [m] and ~mask, pairs of bearings [rad]. Raises ParameterError."""
-    given = {name: rospy.get_param(f"~{name}") for name in _LIMITS if rospy.has_param(f"~{name}")}
+def _read_limits(middleware: Middleware, given: dict[str, Any]) -> ScanLimits:
+    """Metres and pairs of bearings [rad]. Raises ParameterError."""
     try:
         min_range, max_range = (None if given.get(name) is None else float(given[name]) for name in _LIMITS[:2])
-        masks = [(float(begin), float(end)) for begin, end in given.get("mask", [])]
+        masks = [(float(begin), float(end)) for begin, end in _pairs(given.get("mask", []))]
     except (TypeError, ValueError) as error:
+        low, high, mask = map(middleware.parameter_name, _LIMITS)
         raise ParameterError(
-            f"~min_range and ~max_range are metres, and ~mask a list of pairs of bearings such as [[-0.1, 0.1]], not "
+            f"{low} and {high} are metres, and {mask} a list of pairs of bearings such as [[-0.1, 0.1]], not "
             f"{given}: {error}"
         ) from None
     return ScanLimits(min_range, max_range, masks)
 
 
-def _flatten(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    for name, value in tree.items():
-        if isinstance(value, Mapping):
-            yield from _flatten(value, f"{prefix}{name}.")
-        else:
-            yield f"{prefix}{name}", value
+def _pairs(values: Any) -> Any:
+    """ROS 2 has no lists of lists: there the bearings stand one after another."""
+    if values and not isinstance(values[0], list | tuple):
+        return list(zip(values[::2], values[1::2], strict=True))
+    return values

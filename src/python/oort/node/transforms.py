@@ -9,8 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
-import rospy
-import tf2_ros
 from geometry_msgs.msg import TransformStamped
 from sensor_msgs.msg import Imu
 
@@ -18,14 +16,17 @@ from oort._core import Parameters
 from oort.errors import InputError
 from oort.live import UnusableScanError
 from oort.live.odometry import Odometry
-from oort.node.messages import yaw
+from oort.node.logs import log, once
+from oort.node.messages import stamp_parts
+from oort.node.middleware import Middleware
+from oort.node.recent import RecentTransforms
 from oort.recording import Pose
 from oort.recording.frames import FrameTree, describe_variation, heading, to_plane, unit_quaternion
 from oort.recording.gyro import LEVEL, Vector, angular_velocity, upward, yaw_rate
 from oort.recording.laser_scan import seconds
 from oort.recording.motion import Placement
 
-_FRESH = 1.0  # [s]; an older pose of a localiser is not where the robot is
+_FRESH = 1_000_000_000  # [ns]; an older pose of a localiser is not where the robot is
 _IMU_PATIENCE = 5.0  # [s] of the wall's clock that an IMU's transform may come later than its first message
 _SILENCE = 2.0  # [s] of the wall's clock without a word from the localiser, for ROS time may stand still
 
@@ -43,12 +44,14 @@ class Mount:
     upside_down: bool
 
 
-class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
-    """tf2's buffer, which also keeps odometry the way a recording's reader does, so that both see the same poses."""
+class Transforms:
+    """Keeps odometry the way a recording's reader does, so that both see the same poses, and what else is looked up."""
 
-    def __init__(self, parameters: Parameters, on_odometry: Callable[[], None]) -> None:
+    def __init__(self, parameters: Parameters, on_odometry: Callable[[], None], middleware: Middleware) -> None:
         """Frames are those of the parameters; ``on_odometry`` is called when odometry came."""
-        super().__init__(debug=False)
+        self._middleware = middleware
+        self._say_level = once()
+        self._recent = RecentTransforms()
         self._base, self._odom, self._map = (frame(parameters, name) for name in ("base", "odom", "map"))
         self._on_odometry = on_odometry
         self._max_extrapolation = float(parameters.get("max_extrapolation"))
@@ -64,16 +67,14 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         self._localised: dict[str, float] = {}  # [s] time.monotonic() of the last word, by the child of the map frame
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Takes a transform from tf."""
-        if authority == rospy.get_name():
+        """Takes a transform from tf; ``authority`` is the node that sent it."""
+        if authority == self._middleware.name:
             return  # what Oort said itself is no localiser's word
-        super().set_transform(transform, authority)
         if self._note(transform, moving=True):
             self._on_odometry()
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
         """Takes a transform that holds for ever."""
-        super().set_transform_static(transform, authority)
         self._note(transform, moving=False)
 
     # ---- scans ----
@@ -129,7 +130,7 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
     def add_imu(self, message: Imu) -> None:
         """Takes the yaw rate of an IMU's message; what tells none is left out."""
         rate = angular_velocity(message)
-        stamp = seconds(message.header.stamp.secs, message.header.stamp.nsecs)
+        stamp = seconds(*stamp_parts(message.header.stamp))
         with self._lock:
             axis = None if rate is None else self._imu_axis(message.header.frame_id.lstrip("/"))
             if rate is None or axis is None:
@@ -145,7 +146,8 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
             return ""
         with self._lock:
             if self._odometry and time.monotonic() > self._imu_heard + _SILENCE:
-                return f"no yaw rate on {rospy.resolve_name('imu')}; start the IMU, remap imu, or set use_imu to false"
+                topic = self._middleware.resolve("imu")
+                return f"no yaw rate on {topic}; start the IMU, remap imu, or set use_imu to false"
             way = self._tree.way_up(self._base, self._odom)
             odometry = self._odometry.get(way[-2]) if len(way) > 1 else None
             return "" if odometry is None else odometry.gyro_trouble()
@@ -158,7 +160,7 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
             if axis is None:
                 if not self._mounts or time.monotonic() < heard + _IMU_PATIENCE:
                     return None
-                rospy.logwarn_once("no %s -> %s: the IMU is taken to sit level", self._base, imu_frame)
+                self._say_level(f"no {self._base} -> {imu_frame}: the IMU is taken to sit level")
                 return LEVEL  # until tf tells
             self._imu_axes[imu_frame] = axis
             if imu_frame != self._base:
@@ -174,15 +176,13 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
             way = self._tree.way_up(sensor_frame, self._map)
             if len(way) > 1 and time.monotonic() > self._localised[way[-2]] + _SILENCE:
                 return None
-        try:
-            transform = self.lookup_transform(self._map, sensor_frame, rospy.Time(0))
-        except tf2_ros.TransformException:
+            latest = self._recent.latest(self._map, sensor_frame)
+        if latest is None:
             return None
-        stamp = transform.header.stamp
-        if stamp and abs((rospy.Time.now() - stamp).to_sec()) > _FRESH:
+        stamp, matrix = latest
+        if stamp and abs(self._middleware.now() - stamp) > _FRESH:
             return None  # a stamp of 0 is of static transforms only
-        translation, rotation = transform.transform.translation, transform.transform.rotation
-        return translation.x, translation.y, yaw(rotation)
+        return float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(matrix[1, 0], matrix[0, 0])
 
     def is_localised(self) -> bool:
         """Whether another program says now where odometry's frame is on the map."""
@@ -199,9 +199,12 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         rotation = unit_quaternion(r.x, r.y, r.z, r.w)
         if rotation is None or not all(map(math.isfinite, (t.x, t.y, t.z))):
             return False
-        stamp = seconds(transform.header.stamp.secs, transform.header.stamp.nsecs)
+        whole, nanoseconds = stamp_parts(transform.header.stamp)
+        stamp = seconds(whole, nanoseconds)
+        sample = whole * 1_000_000_000 + nanoseconds, (t.x, t.y, t.z), rotation
         pose = t.x, t.y, heading(*rotation)
         with self._lock:
+            self._recent.add(parent, child, sample, fixed=not moving)
             if parent not in self._tree.links.get(child, {}):
                 self._tree.add(parent, child, stamp, (t.x, t.y, t.z), (r.x, r.y, r.z, r.w))
             if (child, parent) in self._fixed:
@@ -210,8 +213,7 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
                 self._localised[child] = time.monotonic() if moving else math.inf
             if parent != self._odom or not moving:
                 return False
-            if self._odometry_of(child).add(stamp, pose):
-                self.clear()  # tf2 would refuse what is older
+            self._odometry_of(child).add(stamp, pose)
         return True
 
     def _odometry_of(self, child: str) -> Odometry:
@@ -224,5 +226,5 @@ class Transforms(tf2_ros.Buffer):  # type: ignore[misc]
         first = self._tree.links[child][parent].by_time()[0, 1:]
         variation = describe_variation(parent, child, first, pose, "sensor")
         if variation:
-            rospy.logwarn("%s; mapping goes on as if it had not moved", variation)
+            log.warning("%s; mapping goes on as if it had not moved", variation)
             self._fixed.remove((child, parent))

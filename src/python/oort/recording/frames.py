@@ -62,7 +62,7 @@ class FrameTree:
             return
         parents = self.links.setdefault(child, {})
         if parent not in parents:
-            parents[parent] = Link(_matrix(translation, *rotation))
+            parents[parent] = Link(homogeneous(translation, *rotation))
         pose = translation[0], translation[1], heading(*rotation)
         parents[parent].samples.extend((time, *pose))
         parents[parent].by_topic.setdefault(topic, pose)
@@ -174,7 +174,7 @@ def to_plane(T_base_sensor: NDArray[np.float64], sensor: str) -> tuple[Pose, boo
     return (float(T_base_sensor[0, 3]), float(T_base_sensor[1, 3]), yaw), upward < 0.0
 
 
-def _matrix(translation: Sequence[float], x: float, y: float, z: float, w: float) -> NDArray[np.float64]:
+def homogeneous(translation: Sequence[float], x: float, y: float, z: float, w: float) -> NDArray[np.float64]:
     """The homogeneous matrix of a translation and a unit quaternion."""
     tx, ty, tz = translation
     return np.array(
