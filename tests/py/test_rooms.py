@@ -42,8 +42,10 @@ ORDER = [
 COMMANDS = {"replay", "localize", "render", "merge", "evaluate", "graph", "migrate"}
 LONGEST_COMMAND = 10  # lines
 
-ROS = {"rospy", "tf2_ros", "oort_msgs", "rosgraph", "genpy"}
-ONLY_IN = {"argparse": {"cli"}, **{module: {"node"} for module in ROS}}
+MIDDLEWARE = {"rospy", "rclpy", "tf2_ros", "oort_msgs", "rosgraph", "genpy"}
+"""What only one of ROS 1 and ROS 2 has, or has otherwise."""
+MESSAGES = {"geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "diagnostic_msgs", "visualization_msgs"}
+ONLY_IN = {"argparse": {"cli"}, **{module: {"node"} for module in MIDDLEWARE | MESSAGES}}
 
 FILES = sorted(path for path in PACKAGE.rglob("*.py*") if path.suffix in (".py", ".pyi"))
 
@@ -93,6 +95,11 @@ def test_imports_follow_the_order(path: Path) -> None:
 def test_what_only_one_room_may_import(path: Path) -> None:
     imported = {name.split(".")[0] for name in _imports(path)}
     assert [name for name in imported if _room(path) not in ONLY_IN.get(name, {_room(path)})] == []
+
+
+@pytest.mark.parametrize("path", sorted((PACKAGE / "node").glob("*.py")), ids=lambda path: path.name)
+def test_the_nodes_know_no_middleware(path: Path) -> None:
+    assert not {name.split(".")[0] for name in _imports(path)} & MIDDLEWARE
 
 
 def test_a_command_only_calls_its_tool() -> None:

@@ -66,10 +66,6 @@ class Middleware(ABC):
         """False from the moment at which the node is to end."""
 
     @abstractmethod
-    def run(self) -> None:
-        """From here on callbacks come."""
-
-    @abstractmethod
     def close(self) -> None:
         """Leaves the ROS graph."""
 

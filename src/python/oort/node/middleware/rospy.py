@@ -41,9 +41,6 @@ class Rospy(Middleware):
         """False from the moment at which the node is to end."""
         return not rospy.is_shutdown()
 
-    def run(self) -> None:
-        """rospy's own threads call as soon as something is subscribed to."""
-
     def close(self) -> None:
         """Leaves the ROS graph."""
         rospy.signal_shutdown("the node ends")
