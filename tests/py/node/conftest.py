@@ -5,6 +5,7 @@
 Without ROS, every test that asks for one of these fixtures is skipped.
 """
 
+import importlib.util
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from node.peer import Peer
 from node.running import Core, Node, start_core
 
 NodeFactory = Callable[..., Node]
@@ -41,6 +43,30 @@ def rospy(ros: Core) -> Iterator[Any]:
     rospy.init_node("oort_tests", disable_signals=True)
     yield rospy
     rospy.signal_shutdown("the tests are over")
+
+
+@pytest.fixture(scope="session")
+def graph(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Peer]:
+    """The ROS graph of the test session's own, of the ROS that is there: for tests of nodes in either."""
+    if importlib.util.find_spec("rclpy") is None:
+        core = request.getfixturevalue("ros")
+        request.getfixturevalue("rospy")
+        from node.peer_rospy import RospyPeer
+
+        yield RospyPeer(core)
+        return
+    from node.peer_rclpy import RclpyPeer
+
+    peer = RclpyPeer(tmp_path_factory.mktemp("ros"), 1 + os.getpid() % 100)
+    yield peer
+    peer.close()
+
+
+@pytest.fixture
+def peer(graph: Peer) -> Iterator[Peer]:
+    """It; what a test has opened is closed at its end."""
+    yield graph
+    graph.forget()
 
 
 @pytest.fixture
