@@ -4,16 +4,18 @@
 # Sets Oort up on Debian 12: system packages, a virtual environment in .venv, and the package built into it.
 #   scripts/setup.sh           what mapping needs
 #   scripts/setup.sh --ros     and what the ROS node and the ROS command line tools need
-#   scripts/setup.sh --test    and what the tests need, with ROS
+#   scripts/setup.sh --ros2    and ROS 2's rclpy in .venv-ros2, for trying it where there is no ROS 2 distribution
+#   scripts/setup.sh --test    and what the tests need, with ROS 1
 # Without root and without sudo the system packages must be there already.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-ros=OFF test=OFF extra=""
+ros=OFF ros2=OFF test=OFF extra=""
 case "${1:-}" in
   "") ;;
   --ros) ros=ON ;;
+  --ros2) ros2=ON ;;
   --test) ros=ON test=ON extra="[test]" ;;
-  *) echo "usage: scripts/setup.sh [--ros | --test]" >&2; exit 2 ;;
+  *) echo "usage: scripts/setup.sh [--ros | --ros2 | --test]" >&2; exit 2 ;;
 esac
 
 packages=(g++ cmake ninja-build python3 python3-venv python3-dev
@@ -54,3 +56,4 @@ if [ -d .venv/share/oort ]; then
 else
   echo "The ROS node is not there; scripts/setup.sh --ros adds it."
 fi
+[ $ros2 = OFF ] || scripts/ros2_environment.sh

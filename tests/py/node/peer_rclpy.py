@@ -3,6 +3,7 @@
 """A peer over ROS 2."""
 
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -13,7 +14,7 @@ import rclpy
 from builtin_interfaces.msg import Time
 from oort_msgs import srv
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Trigger
@@ -22,7 +23,6 @@ from node.peer import Peer, Reply, until
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _STREAM = QoSProfile(depth=10_000)
-_SCANS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class RclpyPeer(Peer):
@@ -36,6 +36,7 @@ class RclpyPeer(Peer):
             "ROS_LOG_DIR": str(folder),
             "ROS_PYTHON_CHECK_FIELDS": "1",
             "PYTHONUNBUFFERED": "1",
+            "AMENT_PREFIX_PATH": os.environ.get("AMENT_PREFIX_PATH", sys.prefix),  # where ROS 2 comes from wheels
         }
         os.environ.update(own)
         self.environment = dict(os.environ)
@@ -71,9 +72,12 @@ class RclpyPeer(Peer):
         """Back."""
         return float(stamp.sec + stamp.nanosec / 1e9)
 
-    def publisher(self, topic: str, kind: Any, *, latched: bool = False) -> Callable[[Any], None]:
-        """Publishes on a topic, once somebody listens; a scan as sensors do."""
-        quality = _LATCHED if latched else qos_profile_sensor_data if kind in (Imu, LaserScan) else _STREAM
+    def publisher(
+        self, topic: str, kind: Any, *, latched: bool = False, reliable: bool = False
+    ) -> Callable[[Any], None]:
+        """Publishes on a topic, once somebody listens; a scan as sensors do, unless it must not be lost."""
+        as_sensors = kind in (Imu, LaserScan) and not reliable
+        quality = _LATCHED if latched else qos_profile_sensor_data if as_sensors else _STREAM
         publisher = self.node.create_publisher(kind, topic, quality)
         self._opened.append((self.node.destroy_publisher, publisher))
         until(lambda: latched or publisher.get_subscription_count() > 0, f"somebody listens to {topic}")

@@ -23,13 +23,12 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
+from helpers.saved_room import save_room
 from node.client import Client, Heard, figures, until
 from node.robot import COURSE, LASER, Localiser, Robot
 from node.running import Core, Node
-from oort import Parameters, Session, save_map
 from oort.node.messages import rotation, yaw
 from oort.poses import between, compose
-from oort.recording import Scan
 
 pytestmark = pytest.mark.usefixtures("rospy")
 
@@ -74,28 +73,7 @@ def ears() -> Iterator[Ears]:
 
 @pytest.fixture(scope="module")
 def base(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """A saved map of the room that the robot's course leads around, with a dock where it begins."""
-    session = Session(Parameters(), tuple(COURSE.T_base_laser.tolist()))
-    session.start()
-    session.create_location("dock", "dock")
-    for k in range(len(COURSE)):
-        x, y, theta = COURSE.T_odom_base[k].tolist()
-        session.add_scan(
-            Scan(
-                COURSE.ranges[k],
-                COURSE.angle_min,
-                COURSE.angle_increment,
-                COURSE.range_min,
-                COURSE.range_max,
-                100.0 + 0.1 * k,
-                stamp=f"{100.0 + 0.1 * k:.6f}",
-                odometry=(x, y, theta),
-            )
-        )
-    session.stop()
-    path = str(tmp_path_factory.mktemp("map") / "room")
-    save_map(path, session.map)
-    return path
+    return save_room(tmp_path_factory.mktemp("map") / "room")
 
 
 @contextmanager

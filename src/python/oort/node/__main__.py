@@ -6,8 +6,8 @@ import sys
 
 from oort.events import EventLog
 from oort.node.logs import log
-from oort.node.middleware import Middleware, find
-from oort.node.running import Closable, run_node
+from oort.node.middleware import Closable, Middleware, find
+from oort.node.running import run_node
 from oort.node.settings import read_settings
 
 

@@ -6,12 +6,12 @@ import sys
 
 from oort.errors import InputError
 from oort.node.logs import log
-from oort.node.middleware import Middleware, find
-from oort.node.running import Closable, run_node
+from oort.node.middleware import Managed, Middleware, find
+from oort.node.running import run_node
 from oort.node.settings import read_settings
 
 
-def _begin(middleware: Middleware) -> Closable:
+def _begin(middleware: Middleware) -> Managed:
     from oort.node.localizer_node import STARTS, LocalizerNode  # needs the messages of a ROS, see main()
 
     settings = read_settings(middleware, ["map", "start"])
@@ -28,7 +28,7 @@ def _begin(middleware: Middleware) -> Closable:
 
 def main() -> int:
     """Runs the node until it is told to end; exit code 2 if it cannot begin."""
-    return run_node(find("oort_localizer")("oort_localizer"), _begin)
+    return run_node(find("oort_localizer", managed=True)("oort_localizer"), _begin)
 
 
 if __name__ == "__main__":

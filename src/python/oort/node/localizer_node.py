@@ -4,6 +4,7 @@
 
 import threading
 import time
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from std_msgs.msg import String
 from oort._core import Map, Parameters, normalise_map_path, render_map
 from oort.errors import InputError, StateError
 from oort.live.figures import Figures
-from oort.live.inbox import UNUSABLE, CallItem, Inbox, ScanItem
+from oort.live.inbox import UNUSABLE, Answer, CallItem, Inbox, ScanItem
 from oort.live.snapshot import odom_pose_of
 from oort.localization import Localizer, ReferenceMap, start_covariance, start_pose
 from oort.node.diagnostics import diagnostic_array
@@ -25,7 +26,7 @@ from oort.node.laser import Laser
 from oort.node.last_pose import LastPose
 from oort.node.localizer_health import LocalizerHealth, Sighting
 from oort.node.logs import log
-from oort.node.messages import place_grid, rotation, transform, yaw
+from oort.node.messages import place_grid, pose_with_covariance, transform, yaw
 from oort.node.middleware import Middleware, Quality
 from oort.node.running import repeat
 from oort.node.transforms import Transforms, frame
@@ -64,7 +65,7 @@ class LocalizerNode:
         self._sensor_frame = frame(parameters, "sensor")
         self._last_tf = 0  # [ns]
         self._tf_lock = threading.Lock()
-        self._closing = False
+        self._closing, self._active = False, True
         self._saved = time.monotonic()
         self._mount: Pose | None = None
         self._seed: tuple[Pose, NDArray[np.float64]] | None = None  # T_map_sensor, until the laser's mount is known
@@ -74,7 +75,7 @@ class LocalizerNode:
         self._load(base)
 
         self._maps = [middleware.publisher(topic, OccupancyGrid, Quality.LATCHED) for topic in _MAPS]
-        self._pose = middleware.publisher("~pose", PoseWithCovarianceStamped, Quality.STREAM)
+        self._poses = [middleware.publisher("~pose", PoseWithCovarianceStamped, Quality.STREAM)]
         self._state = middleware.publisher("~state", String, Quality.LATCHED)
         self._diagnostics = middleware.publisher("/diagnostics", DiagnosticArray, Quality.STREAM)
         self._inbox = Inbox()
@@ -91,10 +92,20 @@ class LocalizerNode:
         self._worker = threading.Thread(target=self._work, name="oort-localize", daemon=True)
         self._worker.start()
         for period, work in ((_TF_PERIOD, self._tell_tf), (_HEALTH_PERIOD, self._tell_health)):
-            threading.Thread(target=repeat, args=(middleware, period, work), daemon=True).start()
+            threading.Thread(target=repeat, args=(self._is_running, period, work), daemon=True).start()
         middleware.serve("~map/load", "SetString", lambda request: self._call("load", request.data))
         middleware.serve("~relocalize", "Empty", lambda _: self._call("relocalize"))
         middleware.serve("~is_localized", "GetBool", lambda _: {"data": self._last.state == "tracking"})
+        if middleware.ros == 2:
+            self._offer_conventions()
+
+    def _offer_conventions(self) -> None:
+        """What users of amcl and of nav2's map_server know."""
+        serve = self._middleware.serve
+        self._poses.append(self._middleware.publisher("amcl_pose", PoseWithCovarianceStamped, Quality.LATCHED))
+        serve("~load_map", "SetString", lambda request: self._call("load", request.data))
+        serve("reinitialize_global_localization", "ClassicEmpty", lambda _: self._call("relocalize"))
+        serve("set_initial_pose", "SetPose", lambda request: self._set_pose(request.pose))
 
     def close(self) -> None:
         """Saves the pose and ends the thread."""
@@ -104,6 +115,10 @@ class LocalizerNode:
         self._worker.join()
         self._inbox.close(StateError("the localiser is being shut down"))
         self._save_pose()
+
+    def set_active(self, active: bool) -> None:
+        """While it is not active it hears no scans and tells no pose."""
+        self._active = active
 
     # ---- the map and the start ----
 
@@ -141,6 +156,8 @@ class LocalizerNode:
     # ---- what comes in ----
 
     def _on_scan(self, message: LaserScan) -> None:
+        if not self._active:
+            return
         sensor_frame = message.header.frame_id.lstrip("/") or self._sensor_frame
         self._sensor_frame = self._laser.awaited(sensor_frame, self._sensor_frame)
         self._figures.arrived()
@@ -151,22 +168,34 @@ class LocalizerNode:
 
     def _on_initial_pose(self, message: PoseWithCovarianceStamped) -> None:
         """T_map_base from a person: RViz's "2D Pose Estimate"."""
+        try:
+            self._start_at(message)
+        except InputError as error:
+            log.warning("initialpose: %s; left out", error)
+
+    def _set_pose(self, message: PoseWithCovarianceStamped) -> None:
+        self._start_at(message).result()
+
+    def _start_at(self, message: PoseWithCovarianceStamped) -> "Future[Answer]":
+        """Follows the robot from there, when the working thread comes to it. Raises InputError for a wrong frame."""
         told = message.header.frame_id.lstrip("/")
         if told and told != self._map_frame:
-            log.warning("initialpose: it is in frame %s, not in %s; left out", told, self._map_frame)
-            return
+            raise InputError(f"it is in frame {told}, not in {self._map_frame}")
         position, full = message.pose.pose.position, np.reshape(message.pose.covariance, (6, 6))
         pose = position.x, position.y, yaw(message.pose.pose.orientation)
         covariance = full[np.ix_([0, 1, 5], [0, 1, 5])]
         if not np.isfinite(covariance).all() or np.linalg.eigvalsh(covariance)[0] <= 0.0:
             covariance = start_covariance(0.5, 0.3)
-        self._inbox.add_call("start_at", [pose, covariance])
+        return self._inbox.add_call("start_at", [pose, covariance])
 
     def _call(self, name: str, *args: Any) -> None:
         """Returns when the working thread has done it."""
         self._inbox.add_call(name, args).result()
 
     # ---- the working thread ----
+
+    def _is_running(self) -> bool:
+        return not self._closing and self._middleware.is_running()
 
     def _work(self) -> None:
         while not self._closing:
@@ -253,15 +282,12 @@ class LocalizerNode:
         if last.T_map_odom is None or last.covariance is None:
             return
         self._tell_tf()
-        message = PoseWithCovarianceStamped()
-        message.header.frame_id, message.header.stamp = self._map_frame, self._middleware.stamp(round(1e9 * scan.time))
         x, y, theta = compose(last.T_map_odom, scan.odometry).tolist()
-        message.pose.pose.position.x, message.pose.pose.position.y = x, y
-        message.pose.pose.orientation = rotation(theta)
-        full = np.zeros((6, 6))
-        full[np.ix_([0, 1, 5], [0, 1, 5])] = _of_base(last.covariance, theta, mount)
-        message.pose.covariance = full.ravel().tolist()
-        self._pose.publish(message)
+        covariance = _of_base(last.covariance, theta, mount)
+        stamp = self._middleware.stamp(round(1e9 * scan.time))
+        message = pose_with_covariance((x, y, theta), covariance, self._map_frame, stamp)
+        for publisher in self._poses:
+            publisher.publish(message)
 
     def _tell_tf(self) -> None:
         """map -> odom, dated one period ahead; nothing while lost, or while another program tells it."""
@@ -269,7 +295,8 @@ class LocalizerNode:
             last = self._last
             pose = None if last.state == "lost" else last.T_map_odom
             stamp = self._middleware.now() + round(1e9 * _TF_PERIOD)
-            if pose is None or stamp == self._last_tf or self._transforms.is_localised():
+            silent = not self._active or self._transforms.is_localised()
+            if pose is None or stamp == self._last_tf or silent:
                 return
             self._last_tf = stamp
             pose = odom_pose_of(pose, last.reported_frame)

@@ -5,7 +5,9 @@
 import math
 from typing import Any
 
-from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
+import numpy as np
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, Quaternion, TransformStamped
+from numpy.typing import NDArray
 from sensor_msgs.msg import LaserScan
 
 from oort import _core
@@ -40,6 +42,21 @@ def pose_stamped(pose: Pose, frame: str, stamp: Any) -> PoseStamped:
     x, y, theta = map(float, pose)
     message.pose.position.x, message.pose.position.y = x, y
     message.pose.orientation = rotation(theta)
+    return message
+
+
+def pose_with_covariance(
+    pose: Pose, covariance: NDArray[np.float64], frame: str, stamp: Any
+) -> PoseWithCovarianceStamped:
+    """A pose in a frame with its covariance (3, 3) along the axes of that frame."""
+    message = PoseWithCovarianceStamped()
+    message.header.frame_id, message.header.stamp = frame, stamp
+    x, y, theta = map(float, pose)
+    message.pose.pose.position.x, message.pose.pose.position.y = x, y
+    message.pose.pose.orientation = rotation(theta)
+    full = np.zeros((6, 6))
+    full[np.ix_([0, 1, 5], [0, 1, 5])] = covariance
+    message.pose.covariance = full.ravel().tolist()
     return message
 
 

@@ -18,6 +18,7 @@ from oort.events import EventLog
 from oort.live import Drawing, Listener, LiveSession, Snapshot
 from oort.live.inbox import Resolve
 from oort.live.saver import NAMES
+from oort.node.conventions import MappingConventions
 from oort.node.diagnostics import diagnostic_array
 from oort.node.health import look_over
 from oort.node.laser import Laser
@@ -72,6 +73,7 @@ class Node(Listener):
         # Only who looks at the graph costs its drawing, so that a late one is served when it comes.
         self._graph = middleware.publisher("~graph", MarkerArray, Quality.STREAM, on_subscriber=self._show_graph)
         self._services = Services(self.live, middleware, self._map_frame)
+        self._conventions = MappingConventions(self.live, middleware, self._map_frame) if middleware.ros == 2 else None
         middleware.subscribe_transforms(self._transforms.set_transform, self._transforms.set_transform_static)
         self._scans = middleware.subscribe("scan", LaserScan, Quality.SENSOR, self._on_scan)
         if parameters.get("use_imu"):
@@ -81,7 +83,7 @@ class Node(Listener):
             (_QUEUE_PERIOD, self._tell_queue),
             (_HEALTH_PERIOD, self._tell_health),
         ):
-            threading.Thread(target=repeat, args=(middleware, period, work), daemon=True).start()
+            threading.Thread(target=repeat, args=(middleware.is_running, period, work), daemon=True).start()
 
     def close(self) -> None:
         """Saves the map."""
@@ -113,6 +115,8 @@ class Node(Listener):
     def scan_taken(self, snapshot: Snapshot) -> None:
         """A scan was mapped: the new map -> odom goes out at once."""
         self._tell_pose()
+        if self._conventions is not None:
+            self._conventions.scan_taken()
 
     def call_made(self, snapshot: Snapshot) -> None:
         """A call took effect: when its caller hears of it, no pose of before is still on its way out."""
@@ -129,6 +133,8 @@ class Node(Listener):
         stamp = self._middleware.stamp(self._middleware.now())
         for publisher, grid in ((self._map, drawing.grid), (self._map_cleaned, drawing.cleaned)):
             publisher.publish(place_grid(self._middleware.grid(grid), grid, self._map_frame, stamp))
+        if self._conventions is not None:
+            self._conventions.drawn(drawing)
         self._tell_graph()
 
     def saved(self, what: Saved) -> None:

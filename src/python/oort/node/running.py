@@ -7,18 +7,10 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
-from typing import Protocol
 
 from oort.errors import OortError
 from oort.node.logs import Seldom, log
-from oort.node.middleware import Middleware
-
-
-class Closable(Protocol):
-    """A node that is running."""
-
-    def close(self) -> None:
-        """Saves what is to be saved and ends."""
+from oort.node.middleware import Closable, Middleware
 
 
 def run_node(middleware: Middleware, begin: Callable[[Middleware], Closable]) -> int:
@@ -28,7 +20,7 @@ def run_node(middleware: Middleware, begin: Callable[[Middleware], Closable]) ->
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: told_to_end.set())
     try:
-        node = begin(middleware)
+        node = middleware.hold(begin)
         try:
             while not told_to_end.wait(0.1) and middleware.is_running():
                 pass
@@ -42,17 +34,17 @@ def run_node(middleware: Middleware, begin: Callable[[Middleware], Closable]) ->
     return 0
 
 
-def repeat(middleware: Middleware, period: float, work: Callable[[], None]) -> None:
+def repeat(is_running: Callable[[], bool], period: float, work: Callable[[], None]) -> None:
     """Does something every so many seconds as long as the node runs.
 
     By the wall's clock: a timer of ROS stands still without /clock and dies when it is set back.
     """
     complain = Seldom(say=log.error)
-    while middleware.is_running():
+    while is_running():
         started = time.monotonic()
         try:
             work()
         except Exception:
-            if middleware.is_running():  # then the topics are closed
+            if is_running():  # then the topics are closed
                 complain(traceback.format_exc())
         time.sleep(max(0.0, period - (time.monotonic() - started)))

@@ -6,17 +6,18 @@ import importlib.util
 import os
 import sys
 
-from oort.node.middleware.base import Middleware, Publisher, Quality, Subscription
+from oort.node.middleware.base import Closable, Managed, Middleware, Publisher, Quality, Subscription
 
-__all__ = ["Middleware", "Publisher", "Quality", "Subscription", "find"]
+__all__ = ["Closable", "Managed", "Middleware", "Publisher", "Quality", "Subscription", "find"]
 
 _LIBRARIES = {"1": "rospy", "2": "rclpy"}
 
 
-def find(program: str) -> type[Middleware]:
+def find(program: str, managed: bool = False) -> type[Middleware]:
     """The middleware of the ROS that is there; where both are, of the one that ROS_VERSION names, else ROS 1.
 
-    Without any, ends the program with a sentence that says what to do.
+    ``managed``: whether a node in ROS 2 has a lifecycle. Without any ROS, ends the program with a sentence that says
+    what to do.
     """
     wanted = os.environ.get("ROS_VERSION", "")
     versions = [wanted] if wanted in _LIBRARIES else list(_LIBRARIES)
@@ -33,5 +34,6 @@ def find(program: str) -> type[Middleware]:
 
         return Rospy
     from oort.node.middleware.rclpy import Rclpy
+    from oort.node.middleware.rclpy_lifecycle import ManagedRclpy
 
-    return Rclpy
+    return ManagedRclpy if managed else Rclpy

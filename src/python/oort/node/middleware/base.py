@@ -49,8 +49,25 @@ class Subscription(Protocol):
         """Listens no more."""
 
 
+class Closable(Protocol):
+    """A node of Oort's that is running."""
+
+    def close(self) -> None:
+        """Saves what is to be saved and ends."""
+
+
+class Managed(Closable, Protocol):
+    """One that a manager of lifecycles may put to sleep."""
+
+    def set_active(self, active: bool) -> None:
+        """Whether it works."""
+
+
 class Middleware(ABC):
     """A node in ROS. Callbacks come in threads of the middleware's; all methods may be called from any thread."""
+
+    ros: int
+    """1 or 2: in ROS 2 people expect some names besides"""
 
     @abstractmethod
     def __init__(self, name: str) -> None:
@@ -64,6 +81,10 @@ class Middleware(ABC):
     @abstractmethod
     def is_running(self) -> bool:
         """False from the moment at which the node is to end."""
+
+    def hold(self, begin: "Callable[[Middleware], Closable]") -> Closable:
+        """Begins: at once, unless the node has a lifecycle, of which others say when."""
+        return begin(self)
 
     @abstractmethod
     def close(self) -> None:
@@ -123,7 +144,10 @@ class Middleware(ABC):
 
     @abstractmethod
     def serve(self, name: str, kind: str, handle: Callable[[Any], Fields | None]) -> None:
-        """Offers a service of oort_msgs, or Empty; an OortError of ``handle`` is what the caller is told."""
+        """Offers a service of oort_msgs, or Empty; an OortError of ``handle`` is what the caller is told.
+
+        In ROS 2 also nav_msgs/GetMap as GetOccupancyGrid, and std_srvs/Empty as ClassicEmpty.
+        """
 
     @abstractmethod
     def grid(self, grid: OccupancyGrid) -> Any:

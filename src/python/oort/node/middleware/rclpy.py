@@ -8,6 +8,7 @@ from array import array
 from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import rclpy
@@ -48,11 +49,14 @@ _OF_RCLPY_GROUP = "qos_overrides."
 class Rclpy(Middleware):
     """One node in rclpy's default context."""
 
+    ros = 2
+
     def __init__(self, name: str) -> None:
         """Joins the ROS graph under this name, unless the command line gives another."""
         rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
         self.node = self._make_node(name)
         _forward_log(self.node)
+        self._made: list[Callable[[], object]] = []  # what ends each thing that the node has made
         self._sent: deque[tuple[int, float, float, float]] = deque(maxlen=_REMEMBERED)
         self._broadcaster = self.node.create_publisher(TFMessage, "/tf", _MOVING)
         self._executor = SingleThreadedExecutor()
@@ -77,6 +81,11 @@ class Rclpy(Middleware):
         """False from the moment at which the node is to end."""
         return bool(rclpy.ok()) and self._spinning.is_alive()
 
+    def drop(self) -> None:
+        """Ends all topics and services."""
+        while self._made:
+            self._made.pop()()
+
     def close(self) -> None:
         """Leaves the ROS graph."""
         self._services.close()
@@ -99,11 +108,12 @@ class Rclpy(Middleware):
         return name
 
     def show_parameters(self, values: Mapping[str, Any]) -> None:
-        """Lets others read these, and refuses to change them from here on."""
+        """Lets others read these, and refuses to change them as long as this lasts."""
         for name, value in values.items():
             if not self.node.has_parameter(name):
                 self.node.declare_parameter(name, value)
         self.node.add_on_set_parameters_callback(_refuse)
+        self._made.append(lambda: self.node.remove_on_set_parameters_callback(_refuse))
 
     # ---- time ----
 
@@ -130,7 +140,7 @@ class Rclpy(Middleware):
         All get it then: ROS 2 cannot send to one alone, and latches it until that one is ready to hear.
         """
         if on_subscriber is None:
-            return _Publisher(self.node.create_publisher(kind, _name(topic), _QUALITIES[quality]))
+            return self._published(self.node.create_publisher(kind, _name(topic), _QUALITIES[quality]))
         tell = _shielded(on_subscriber)
 
         def matched(change: Any) -> None:
@@ -139,11 +149,16 @@ class Rclpy(Middleware):
 
         events = PublisherEventCallbacks(matched=matched)
         made: Any = self.node.create_publisher(kind, _name(topic), _QUALITIES[Quality.LATCHED], event_callbacks=events)
+        return self._published(made)
+
+    def _published(self, made: Any) -> Publisher:
+        self._made.append(lambda: self.node.destroy_publisher(made))
         return _Publisher(made)
 
     def subscribe(self, topic: str, kind: Any, quality: Quality, take: Callable[[Any], None]) -> Subscription:
         """Each message to ``take``, in the order in which they come."""
         made = self.node.create_subscription(kind, _name(topic), _shielded(take), _QUALITIES[quality])
+        self._made.append(lambda: self.node.destroy_subscription(made))
         return _Subscription(self.node, made)
 
     def subscribe_transforms(self, moving: Callable[[Any, str], None], fixed: Callable[[Any, str], None]) -> None:
@@ -156,8 +171,9 @@ class Rclpy(Middleware):
 
             return _shielded(take_each)
 
-        self.node.create_subscription(TFMessage, "/tf", each(moving), _MOVING)
-        self.node.create_subscription(TFMessage, "/tf_static", each(fixed), _FIXED)
+        for topic, take, quality in (("/tf", moving, _MOVING), ("/tf_static", fixed, _FIXED)):
+            made = self.node.create_subscription(TFMessage, topic, each(take), quality)
+            self._made.append(partial(self.node.destroy_subscription, made))
 
     def send_transform(self, transform: Any) -> None:
         """To tf."""
@@ -166,7 +182,7 @@ class Rclpy(Middleware):
 
     def serve(self, name: str, kind: str, handle: Callable[[Any], Fields | None]) -> None:
         """Offers a service of oort_msgs, or std_srvs/Trigger for Empty: ROS 2's services cannot fail otherwise."""
-        self._services.offer(_name(name), kind, handle)
+        self._made.append(self._services.offer(_name(name), kind, handle))
 
     def grid(self, grid: OccupancyGrid) -> GridMessage:
         """A nav_msgs/OccupancyGrid with the cells of a map and nothing else; any other sequence takes a hundred ms."""

@@ -5,19 +5,23 @@
 import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
+from nav_msgs.srv import GetMap
 from oort_msgs import srv
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.task import Future
-from std_srvs.srv import Trigger
+from std_srvs.srv import Empty, Trigger
 
 from oort.errors import OortError
 from oort.node.logs import log
 from oort.node.middleware.base import Fields
 
+_STANDARD = {"Empty": Trigger, "ClassicEmpty": Empty, "GetOccupancyGrid": GetMap}
+"""Those that are not of oort_msgs. The last two cannot say that they failed; the log does."""
 _AT_ONCE = 16  # calls that wait for their turn in the mapping's queue, say
 
 
@@ -31,8 +35,8 @@ class Services:
         self._group = ReentrantCallbackGroup()
         self._pool = ThreadPoolExecutor(_AT_ONCE, "oort-service")
 
-    def offer(self, name: str, kind: str, handle: Callable[[Any], Fields | None]) -> None:
-        """Offers a service of oort_msgs, or Trigger for Empty; what it raises goes into the response."""
+    def offer(self, name: str, kind: str, handle: Callable[[Any], Fields | None]) -> Callable[[], object]:
+        """Offers a service; what ``handle`` raises goes into the response. What ends the service."""
 
         async def answer(request: Any, response: Any) -> Any:
             done = Future(executor=self._executor)
@@ -46,8 +50,9 @@ class Services:
             await done
             return response
 
-        service = Trigger if kind == "Empty" else getattr(srv, kind)
-        self._node.create_service(service, name, answer, callback_group=self._group)
+        type_ = _STANDARD.get(kind) or getattr(srv, kind)
+        service = self._node.create_service(type_, name, answer, callback_group=self._group)
+        return partial(self._node.destroy_service, service)
 
     def close(self) -> None:
         """Ends the threads when their work is done."""
@@ -60,12 +65,17 @@ def _fill(response: Any, handle: Callable[[Any], Fields | None], request: Any) -
         fields = handle(request) or {}
     except OortError as error:
         log.warning("%s", error)
-        response.success, response.message = False, str(error)
+        _say(response, False, str(error))
         return
     except Exception as error:
         log.error("%s", traceback.format_exc())
-        response.success, response.message = False, f"{error!r}; the node's log says more"
+        _say(response, False, f"{error!r}; the node's log says more")
         return
-    response.success = True
+    _say(response, True, "")
     for name, value in fields.items():
         setattr(response, name, value)
+
+
+def _say(response: Any, success: bool, message: str) -> None:
+    if hasattr(response, "success"):
+        response.success, response.message = success, message

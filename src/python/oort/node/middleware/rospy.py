@@ -24,6 +24,8 @@ _TRANSFORM_QUEUE = 100
 class Rospy(Middleware):
     """There is one node in a process, as rospy has it."""
 
+    ros = 1
+
     def __init__(self, name: str) -> None:
         """Joins the ROS graph under this name, unless the command line gives another."""
         rospy.init_node(name, disable_signals=True)
