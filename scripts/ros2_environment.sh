@@ -20,7 +20,7 @@ link_oort() {
   echo "$venv/oort" > "$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/oort.pth"
 }
 
-interfaces=(tests/ros2/tf2_msgs ros2/oort_msgs)
+interfaces=(tests/ros2/tf2_msgs tests/ros2/bond ros2/oort_msgs)
 made_of=$(find ros2/requirements-jazzy.txt "${interfaces[@]}" "$0" -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum)
 if [ -f "$venv/made_of" ] && [ "$(cat "$venv/made_of")" = "$made_of" ]; then
   link_oort

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 pytest.importorskip("rclpy", reason="there is no ROS 2 (scripts/setup.sh --ros2)")
+from bond.msg import Status
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
@@ -53,10 +54,14 @@ def test_a_manager_starts_and_stops_it(peer: RclpyPeer, tmp_path: Path, base: st
         assert state(peer) == State.PRIMARY_STATE_ACTIVE
         rover.drive(COURSE[20:60])
         until(poses.__len__, "poses, when it is active")
+        bonds = peer.hear("/bond", Status)
+        until(lambda: len(bonds) > 2, "nav2's manager sees its bond")
+        assert {(one.id, one.active) for one in bonds} == {(NAME, True)}
         for transition in (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP):
             assert change(peer, transition)
         assert state(peer) == State.PRIMARY_STATE_UNCONFIGURED
         until(lambda: peer.node.count_publishers("/map") == 0, "its topics are gone")
+        assert not bonds[-1].active
         for transition in (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
             assert change(peer, transition)
         assert state(peer) == State.PRIMARY_STATE_ACTIVE

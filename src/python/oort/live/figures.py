@@ -67,8 +67,8 @@ class Figures:
         self.delays = Window()
         """[ms] from a scan's arrival until it is mapped and told"""
         self.last_result: ScanResult | None = None
-        self.last_scan_time = 0.0
-        """[s] its stamp"""
+        self.last_stamp = ""
+        """of its scan, exact: see Scan"""
         self._arrivals = Rate()
         self._last_arrival = _NEVER
 

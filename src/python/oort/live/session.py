@@ -188,7 +188,7 @@ class LiveSession:
             self._interrupt(self._last_scan_time - scan.time)
         self._last_scan_time = scan.time
         result = self._session.add_scan(scan)
-        self.figures.last_scan_time = scan.time
+        self.figures.last_stamp = scan.stamp
         self._reported_frame = scan.reported_frame
         self._log(scan.time, SCAN, scan_entry(scan))
         if result is not None and result.outcome == "node":

@@ -15,7 +15,7 @@ from oort.errors import OortError, StateError
 from oort.export.map_server import write_map_server
 from oort.live import Drawing, LiveSession
 from oort.live.paths import check_absolute, make_room
-from oort.node.messages import place_grid, pose_with_covariance
+from oort.node.messages import nanoseconds, place_grid, pose_with_covariance
 from oort.node.middleware import Middleware, Quality
 from oort.session import Session, State
 
@@ -44,7 +44,7 @@ class MappingConventions:
         figures = self._live.figures
         if figures.last_result is None or not self._pose.is_wanted():
             return
-        stamp = self._middleware.stamp(round(1e9 * figures.last_scan_time))
+        stamp = self._middleware.stamp(nanoseconds(figures.last_stamp))
         result = figures.last_result
         self._pose.publish(pose_with_covariance(result.T_map_base, result.covariance, self._map_frame, stamp))
 

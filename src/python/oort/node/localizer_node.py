@@ -26,7 +26,7 @@ from oort.node.laser import Laser
 from oort.node.last_pose import LastPose
 from oort.node.localizer_health import LocalizerHealth, Sighting
 from oort.node.logs import log
-from oort.node.messages import place_grid, pose_with_covariance, transform, yaw
+from oort.node.messages import nanoseconds, place_grid, pose_with_covariance, transform, yaw
 from oort.node.middleware import Middleware, Quality
 from oort.node.running import repeat
 from oort.node.transforms import Transforms, frame
@@ -284,7 +284,7 @@ class LocalizerNode:
         self._tell_tf()
         x, y, theta = compose(last.T_map_odom, scan.odometry).tolist()
         covariance = _of_base(last.covariance, theta, mount)
-        stamp = self._middleware.stamp(round(1e9 * scan.time))
+        stamp = self._middleware.stamp(nanoseconds(scan.stamp))
         message = pose_with_covariance((x, y, theta), covariance, self._map_frame, stamp)
         for publisher in self._poses:
             publisher.publish(message)

@@ -24,6 +24,12 @@ def stamp_parts(stamp: Any) -> tuple[int, int]:
     return (stamp.sec, stamp.nanosec) if hasattr(stamp, "nanosec") else (stamp.secs, stamp.nsecs)
 
 
+def nanoseconds(stamp: str) -> int:
+    """[ns] of a scan's stamp, to the last digit: what a subscriber matches with the scan."""
+    whole, _, part = stamp.partition(".")
+    return int(whole) * 1_000_000_000 + int(f"{part:0<9}")
+
+
 def place_grid(message: Any, grid: _core.OccupancyGrid, frame: str, stamp: Any) -> Any:
     """The message with the cells of a rendered map, completed: its rows lie along the x axis of `frame`."""
     message.header.frame_id, message.header.stamp = frame, stamp

@@ -12,6 +12,7 @@ from oort.errors import OortError, StateError
 from oort.node.logs import log
 from oort.node.middleware.base import Closable, Managed, Middleware
 from oort.node.middleware.rclpy import Rclpy
+from oort.node.middleware.rclpy_bond import Bond
 
 _AUTOSTART = "autostart"
 
@@ -86,15 +87,18 @@ class _Lifecycle(LifecycleNode):  # type: ignore[misc]
     def __init__(self, middleware: ManagedRclpy, name: str) -> None:
         self._oort = middleware
         super().__init__(name, automatically_declare_parameters_from_overrides=True)
+        self._bond = Bond(self)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         return TransitionCallbackReturn.SUCCESS if self._oort.configure() else TransitionCallbackReturn.FAILURE
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         self._oort.set_active(True)
+        self._bond.hold()
         return super().on_activate(state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        self._bond.release()
         self._oort.set_active(False)
         return super().on_deactivate(state)
 
@@ -103,5 +107,6 @@ class _Lifecycle(LifecycleNode):  # type: ignore[misc]
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        self._bond.release()
         self._oort.clean_up()
         return TransitionCallbackReturn.SUCCESS
