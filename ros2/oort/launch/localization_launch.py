@@ -17,6 +17,7 @@ ARGUMENTS = {
     "namespace": ("", "of the robot, where there are several"),
     "autostart": ("true", "activate itself; false for a lifecycle manager that does so"),
     "scan_topic": ("scan", "of the laser"),
+    "base_frame": ("base_footprint", "of the robot; base_link where there is no other"),
     "start": ("auto", "where it begins: auto, last, dock or global"),
     "name": ("oort_localizer", "of the node, which its services begin with"),
 }
@@ -32,7 +33,7 @@ def generate_launch_description() -> LaunchDescription:
         output="screen",
         parameters=[
             LaunchConfiguration("params_file"),
-            {name: LaunchConfiguration(name) for name in ("use_sim_time", "autostart", "map", "start")},
+            {name: LaunchConfiguration(name) for name in ("use_sim_time", "autostart", "base_frame", "map", "start")},
         ],
         remappings=[("/tf", "tf"), ("/tf_static", "tf_static"), ("scan", LaunchConfiguration("scan_topic"))],
         sigterm_timeout="20",  # the pose is saved at the end

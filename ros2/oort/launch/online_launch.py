@@ -16,6 +16,7 @@ ARGUMENTS = {
     "params_file": (str(CONFIG), "a YAML file of parameters"),
     "namespace": ("", "of the robot, where there are several"),
     "scan_topic": ("scan", "of the laser"),
+    "base_frame": ("base_footprint", "of the robot; base_link where there is no other"),
     "imu_topic": ("imu", "of the IMU, read if use_imu is true"),
     "name": ("oort_slam", "of the node, which its services begin with"),
 }
@@ -29,7 +30,10 @@ def generate_launch_description() -> LaunchDescription:
         name=LaunchConfiguration("name"),
         namespace=LaunchConfiguration("namespace"),
         output="screen",
-        parameters=[LaunchConfiguration("params_file"), {"use_sim_time": LaunchConfiguration("use_sim_time")}],
+        parameters=[
+            LaunchConfiguration("params_file"),
+            {name: LaunchConfiguration(name) for name in ("use_sim_time", "base_frame")},
+        ],
         remappings=[
             ("/tf", "tf"),
             ("/tf_static", "tf_static"),
