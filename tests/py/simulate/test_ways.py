@@ -32,7 +32,35 @@ def test_furniture_is_moved_within_the_home() -> None:
     np.testing.assert_allclose(before.home.dock, after.home.dock, atol=1e-9)
 
 
-@pytest.mark.parametrize("wrong", [{"way": -1}, {"moved": -1}, {"scene": "alike", "moved": 1}])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"way": -1},
+        {"moved": -1},
+        {"arrangement": -1},
+        {"scene": "alike", "moved": 1},
+        {"scene": "alike", "doors": True},
+    ],
+)
 def test_what_cannot_be_is_refused(wrong: dict[str, object]) -> None:
-    with pytest.raises(ValueError, match=r"way|moved"):
+    with pytest.raises(ValueError, match=r"way|moved|arrangement"):
         SimulationConfig(**wrong)  # type: ignore[arg-type]
+
+
+def test_an_arrangement_is_the_same_on_every_way() -> None:
+    config = {"minutes": 0.0, "moved": 3, "doors": True, "arrangement": 1}
+    one, other = (simulate_drive(2, SimulationConfig(way=way, **config)) for way in (1, 2))  # type: ignore[arg-type]
+    np.testing.assert_allclose(one.home.segments, other.home.segments, atol=1e-9)
+    assert not np.array_equal(one.T_map_base[:100], other.T_map_base[:100])
+    assert one.home.segments.shape == drive(1).home.segments.shape
+    assert not np.allclose(one.home.segments, drive(1).home.segments)
+
+
+def test_doors_stand_open_at_other_angles() -> None:
+    before, after = (simulate_drive(3, SimulationConfig(minutes=0.0, way=1, doors=doors)) for doors in (False, True))
+    leaves = [
+        {tuple(piece.footprint.round(6).ravel()) for piece in d.home.pieces if piece.name == "door leaf"}
+        for d in (before, after)
+    ]
+    assert leaves[0] and len(leaves[0]) == len(leaves[1])
+    assert leaves[0] != leaves[1]

@@ -38,6 +38,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             turn_error=arguments.turn_error,
             moved=arguments.moved,
             rear=arguments.rear,
+            arrangement=arguments.arrangement,
+            doors=arguments.doors,
         )
         drive = simulate_drive(arguments.seed, config)
         name = arguments.name or f"{arguments.scene}_{arguments.seed}"
@@ -80,6 +82,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--no-person", dest="person", action="store_false", help="nobody crosses the view")
     parser.add_argument("--way", type=int, default=0, metavar="N", help="another drive through the same home")
     parser.add_argument("--moved", type=int, default=0, metavar="N", help="pieces of furniture moved since drive 0")
+    parser.add_argument("--doors", action="store_true", help="doors stand open at other angles than on drive 0")
+    parser.add_argument(
+        "--arrangement", type=int, default=0, metavar="N", help="what is moved follows from N, not from --way"
+    )
     parser.add_argument("--picture", action=argparse.BooleanOptionalAction, default=True, help="write a PNG too")
     return parser
 

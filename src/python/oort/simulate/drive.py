@@ -26,6 +26,7 @@ START_STAMP = 1_600_000_000_000_000_000  # ns, of the first scan
 STEP_STAMP = round(STEP * 1e9)  # ns between odometry poses
 STEPS_PER_SCAN = 5  # 10 scans a second
 REAR_STEPS = 2  # from a scan to that of the sensor that looks back
+_MOVING = 1  # tells the stream of an arrangement from those of a way
 AFTER_DOCKING = 1.05  # s from standing on the dock to the call that tells so; falls between two scans
 
 
@@ -51,7 +52,11 @@ class SimulationConfig:
     odometry and sensor err anew. The map frames of a home's drives are the same, since all begin on the dock."""
     moved: int = 0
     """Up to so many pieces of furniture stand elsewhere in their rooms than on drives where it is 0; which ones follows
-    from ``way``."""
+    from ``way``, or from ``arrangement`` if that is above 0."""
+    arrangement: int = 0
+    """Beyond 0 what stands elsewhere, and how far doors stand open, follows from it: the same on several ways."""
+    doors: bool = False
+    """Whether doors stand open at other angles than on drives where it is False."""
     gyro: bool = False
     """Whether the robot has a gyro."""
     turn_error: float = 1.0
@@ -76,8 +81,10 @@ class SimulationConfig:
             raise ValueError("nobody carries the robot in the corridor: choose another fault or scene")
         if self.way < 0 or self.moved < 0:
             raise ValueError(f"way {self.way}, {self.moved} pieces moved: choose whole numbers from 0")
-        if self.scene != "home" and self.moved > 0:
-            raise ValueError(f"scene {self.scene!r}: furniture is moved in scene 'home' only")
+        if self.arrangement < 0:
+            raise ValueError(f"arrangement {self.arrangement}: choose a whole number from 0")
+        if self.scene != "home" and (self.moved > 0 or self.doors):
+            raise ValueError(f"scene {self.scene!r}: furniture and doors are moved in scene 'home' only")
 
     @property
     def in_corridor(self) -> bool:
@@ -195,7 +202,7 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
     if seed < 0:
         raise ValueError(f"seed {seed}: choose a whole number from 0")
     home_rng, way_rng, person_rng, odometry_rng, sensor_rng, fault_rng, gyro_rng = _streams(seed, config.way)
-    course = _make_course(config, home_rng, way_rng, fault_rng)
+    course = _make_course(seed, config, home_rng, way_rng, fault_rng)
     whole = course.motion.steps.shape[0] // STEPS_PER_SCAN * STEPS_PER_SCAN  # the last step is the last scan's
     all_poses, steps = course.motion.poses[: whole + 1], course.motion.steps[:whole]
     poses = all_poses[::STEPS_PER_SCAN]
@@ -279,12 +286,17 @@ def _seconds(stamps: npt.NDArray[np.int64], steps: tuple[int, int]) -> tuple[flo
 _ODOMETRY_FAULTS = {"freeze": faults.freeze, "bump": faults.bump}
 
 
-def _make_course(config: SimulationConfig, home_rng: Rng, way_rng: Rng, fault_rng: Rng) -> Course:
+def _make_course(seed: int, config: SimulationConfig, home_rng: Rng, way_rng: Rng, fault_rng: Rng) -> Course:
     if config.in_corridor:
         return drive_corridor(config.scene == "corridor-return", way_rng)
-    if config.moved > 0:
+    if config.moved > 0 or config.doors:
         furnisher = furnish_home(home_rng)
-        furnisher.rearrange(config.moved, way_rng.spawn(1)[0])
+        moving = way_rng.spawn(1)[0]
+        if config.arrangement > 0:
+            moving = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, config.arrangement, _MOVING])))
+        furnisher.rearrange(config.moved, moving)
+        if config.doors:
+            furnisher.swing_doors(moving)
         made = furnisher.home(), furnisher.plan, furnisher.grid
     else:
         made = (make_alike_home if config.scene == "alike" else make_home)(home_rng)

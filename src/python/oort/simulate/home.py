@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Made-up homes: a floor plan, furnished so that a robot can still reach every room, with a dock at a wall."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,7 @@ DOOR_APPROACH = 0.7  # m on both sides of a doorway where nothing stands
 DOCK_SIZE = (0.32, 0.08)  # width, depth
 DOCK_TO_BASE = 0.17  # m from the dock's front to the base's centre when docked
 DOCK_FRONT = 0.75  # m from the docked base to the place from which the robot backs on
+DOOR_ANGLES = (1.6, 2.2)  # rad from closed
 TRIES = 15  # places tried for one piece
 SHIFT = (0.3, 1.5)  # m that a piece is moved when a home is rearranged
 
@@ -119,6 +120,11 @@ def _holds(rect: Rect, point: Array) -> bool:
     return bool(rect.x0 <= point[0] <= rect.x1 and rect.y0 <= point[1] <= rect.y1)
 
 
+def _is_at(leaf: Piece, hinge: Array) -> bool:
+    """Whether a door leaf hangs there: its near corners are 2 to 3 cm from the hinge."""
+    return bool(np.hypot(*(leaf.footprint - hinge[:2]).T).min() < 0.05)
+
+
 class Furnisher:
     """Puts pieces into the rooms of a plan, one by one, and keeps every doorway reachable."""
 
@@ -128,6 +134,7 @@ class Furnisher:
         self._walls = wall_segments(plan)
         self.grid = self._empty_grid()
         self.pieces: list[Piece] = []
+        self._doors: list[tuple[int, Array, float, bool]] = []  # room, hinge, length, whether the hinge is on the left
         self.dock = np.zeros(3)
         self._kept_free = [
             doorway.gap.grown(*((DOOR_APPROACH, 0.0) if doorway.wall_along_y else (0.0, DOOR_APPROACH))).polygon()
@@ -187,6 +194,14 @@ class Furnisher:
         for number in rng.permutation(len(movable))[:count]:
             self._shift(movable[int(number)], rng)
 
+    def swing_doors(self, rng: np.random.Generator) -> None:
+        """Let each door stand open at another angle, where nothing is in its way."""
+        for index, hinge, length, hinge_on_left in self._doors:
+            angle = float(rng.uniform(*DOOR_ANGLES))
+            old = next((p for p in self.pieces if p.name == "door leaf" and _is_at(p, hinge)), None)
+            if old is not None:
+                self._replace(index, old, [furniture.door_leaf(length, angle, hinge_on_left).moved(hinge)])
+
     def put(self, piece: Piece) -> None:
         """Put a piece where it is, whatever it blocks."""
         self.grid.block_polygon(piece.footprint)
@@ -208,17 +223,24 @@ class Furnisher:
         """Take a piece away and put it down elsewhere in its room, or back."""
         centre = piece.footprint.mean(axis=0)
         index = next(i for i, room in enumerate(self.plan.rooms) if _holds(room.rect, centre))
+
+        def shifted() -> Iterator[Piece]:
+            for _ in range(TRIES):
+                shift = [0.0, 0.0, 0.0]
+                shift[int(rng.integers(2))] = float(rng.choice([-1.0, 1.0]) * rng.uniform(*SHIFT))
+                yield piece.moved(shift)
+
+        self._replace(index, piece, shifted())
+
+    def _replace(self, index: int, piece: Piece, tries: Iterable[Piece]) -> None:
+        """Take a piece away and put down the first of ``tries`` that fits in its room, or the piece again."""
         others = [other for other in self.pieces if other is not piece]
         self.grid = self._empty_grid()
         self.pieces = []
         for other in others:
             self.put(other)
-        for _ in range(TRIES):
-            shift = [0.0, 0.0, 0.0]
-            shift[int(rng.integers(2))] = float(rng.choice([-1.0, 1.0]) * rng.uniform(*SHIFT))
-            if self._try(index, piece.moved(shift)):
-                return
-        self.put(piece)
+        if not any(self._try(index, other) for other in tries):
+            self.put(piece)
 
     def _empty_grid(self) -> ClearanceGrid:
         rects = [room.rect for room in self.plan.rooms]
@@ -265,8 +287,10 @@ class Furnisher:
         frame = np.array([corner[0], corner[1], sides.index(True) * 0.5 * np.pi])
         hinge_on_left = bool(self.rng.random() < 0.5)
         offset = -0.03 if hinge_on_left else doorway.width + 0.03
-        leaf = furniture.door_leaf(doorway.width - 0.03, float(self.rng.uniform(1.6, 2.2)), hinge_on_left)
-        self._try(index, leaf.moved(compose(frame, [offset, 0.005, 0.0])))
+        length, hinge = doorway.width - 0.03, compose(frame, [offset, 0.005, 0.0])
+        leaf = furniture.door_leaf(length, float(self.rng.uniform(*DOOR_ANGLES)), hinge_on_left)
+        if self._try(index, leaf.moved(hinge)):
+            self._doors.append((index, hinge, length, hinge_on_left))
 
     def _wall_off_corner(self, index: int) -> None:
         corner = int(self.rng.integers(4))
