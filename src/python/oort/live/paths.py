@@ -6,11 +6,11 @@ import os
 from pathlib import Path
 from typing import Any
 
-from oort._core import load_map, normalise_map_path, save_map
+from oort._core import normalise_map_path
 from oort.errors import MapFileError, StateError
+from oort.history import keep_version
 
 _FILES = (".map_capnp", ".map_meta_capnp", ".md5")
-_SET_ASIDE = ".previous"
 
 
 def check_absolute(call: str, path: Any) -> None:
@@ -31,19 +31,17 @@ def make_room(call: str, path: str) -> None:
 
 
 def set_aside(call: str, path: str) -> str:
-    """Copies the map that is saved at a path; the copy's path, or nothing if there is no map. An older copy goes.
+    """Keeps the map that is saved at a path as a version; the copy's path, or nothing if there is no map.
 
     Raises MapFileError if there is a map that cannot be copied, so that it will not be overwritten.
     """
     base = normalise_map_path(path)
-    copy = base + _SET_ASIDE
     try:
-        save_map(copy, load_map(base))
+        return keep_version(base)
     except MapFileError as error:
         if not any(os.path.lexists(base + ending) for ending in _FILES):
             return ""  # at most the begin of a first save, which was cut short
         raise MapFileError(
-            f"{call}: {base} holds another map, which cannot be kept as {copy} ({error}); move its files away, or "
-            "give another path"
+            f"{call}: {base} holds another map, which cannot be kept as {base}.previous ({error}); move its files "
+            "away, or give another path"
         ) from error
-    return copy

@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``oort history MAP``: lists the earlier versions of a saved map, or goes back to one."""
+
+import argparse
+import time
+from collections.abc import Sequence
+
+from oort.cli.tool import run_tool
+from oort.history import restore, versions
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort history",
+        description="Lists the earlier versions of a saved map: what it was before each of the last sessions that were "
+        "saved over it.",
+    )
+    parser.add_argument("map", metavar="MAP", help="the path of the map")
+    parser.add_argument(
+        "--restore", type=int, metavar="N", help="make version N the map again; what it is now becomes version 1"
+    )
+    return parser
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    if arguments.restore is not None:
+        restore(arguments.map, arguments.restore)
+        print(f"{arguments.map}: is version {arguments.restore} again; what it was is version 1 now")
+        return
+    found = versions(arguments.map)
+    for version in found:
+        when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(version.saved))
+        print(f"{version.number}  kept {when}  {version.path}")
+    if not found:
+        print(f"{arguments.map}: no earlier versions")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
+    arguments = _parser().parse_args(argv)
+    return run_tool("oort history", lambda: _run(arguments), arguments.map)
