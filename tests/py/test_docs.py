@@ -46,6 +46,8 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         "evaluate relations",
         "evaluate autogenerate",
         "graph solve",
+        "prune",
+        "history",
         "migrate",
         "merge",
         "batch",

@@ -20,6 +20,7 @@ ORDER = [
     "config",
     "recording",
     "saved_maps",
+    "history",
     "events",
     "mapper",
     "naming",

@@ -7,8 +7,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "bindings.hpp"
+#include "oort/maintenance/prune.hpp"
 #include "oort/mapper/mapper.hpp"
 
 namespace py = pybind11;
@@ -168,6 +171,22 @@ py::list locations_of(const Mapper& mapper) {
   return list;
 }
 
+void bind_pruning(py::module_& m) {
+  m.def(
+      "prune_map",
+      [](const Map& map, unsigned views, bool always) {
+        const py::gil_scoped_release release;
+        if (always) return prune_grown(map, views).map;
+        std::optional<Pruned> pruned = prune(map, {views, false});
+        return pruned ? std::move(pruned->map) : map;
+      },
+      py::arg("map"), py::arg("views"), py::arg("always") = true,
+      "The map without the nodes that show no piece of surface that others do not show from the same side so often, "
+      "and "
+      "without what newer segments contradict. Not always: only if that is a good part of the nodes, and nothing "
+      "else.");
+}
+
 void bind_scan_result(py::module_& m) {
   py::class_<ScanResult>(m, "ScanResult", "What became of a scan.")
       .def_property_readonly(
@@ -219,6 +238,7 @@ py::dict dict_of(const ClosureCounts& counts) {
 }
 
 void bind_mapping(py::module_& m) {
+  bind_pruning(m);
   bind_scan_result(m);
   py::class_<Mapper>(m, "Mapper", "Turns scans with odometry into a map. Not thread-safe.")
       .def(py::init(
@@ -244,8 +264,10 @@ void bind_mapping(py::module_& m) {
       .def("notify_docked", &Mapper::notify_docked, py::call_guard<py::gil_scoped_release>(),
            "Links the current place to the dock. Whether a closure was found.")
       .def(
-          "begin_session", [](Mapper& mapper, const PoseTuple& pose) { mapper.begin_session(pose_of(pose)); },
-          py::arg("sensor_on_map"), "The next scan begins a new trajectory segment at about this pose of the map.")
+          "begin_session", [](Mapper& mapper, const PoseTuple& pose) { return mapper.begin_session(pose_of(pose)); },
+          py::arg("sensor_on_map"), py::call_guard<py::gil_scoped_release>(),
+          "The next scan begins a new trajectory segment at about this pose of the map, which is pruned first if it "
+          "shows most places more often than keep_views asks for. The node that each node became or is carried by.")
       .def("resume_from_paused", &Mapper::resume_from_paused,
            "The next scan makes a node whose link to the last one is very uncertain.")
       .def("finish", &Mapper::finish, py::call_guard<py::gil_scoped_release>(), "Brings the map to its final solution.")

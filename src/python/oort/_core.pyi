@@ -352,8 +352,10 @@ class Mapper:
         the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError;
         nothing changes then.
         """
-    def begin_session(self, sensor_on_map: tuple[float, float, float]) -> None:
-        """The next scan begins a new trajectory segment at about this pose of the map."""
+    def begin_session(self, sensor_on_map: tuple[float, float, float]) -> list[int]:
+        """The next scan begins a new trajectory segment at about this pose of the map, which is pruned first if it
+        shows most places more often than keep_views asks for. The node that each node became or is carried by.
+        """
     def create_location(self, name_space: str, id: str, pose: tuple[float, float, float]) -> None:
         """Names a pose of the map."""
     def create_points(self, name_spaces: Sequence[str], points: Sequence[Sequence[float]], ids: Sequence[str]) -> None:
@@ -583,6 +585,11 @@ def optimize_map_with_landmarks(
 
 def parameter_table() -> list[ParameterEntry]:
     """Every parameter once, in the order of params.json."""
+
+def prune_map(map: Map, views: int, always: bool = True) -> Map:
+    """The map without the nodes that show no piece of surface that others do not show from the same side so often, and
+    without what newer segments contradict. Not always: only if that is a good part of the nodes, and nothing else.
+    """
 
 def read_map_format(path: str, ignore_checksum: bool = False) -> MapFormat:
     """In which format a map is, even if it is too new to be loaded. Raises MapFileError."""

@@ -167,8 +167,12 @@ class Session:
         self._state = State.NOT_MAPPING
         self._path = path
 
-    def resume(self, path: str, pose: Pose) -> None:
-        """Goes on with the loaded map in a new segment; ``pose`` is about where the sensor is in the map frame."""
+    def resume(self, path: str, pose: Pose) -> list[int]:
+        """Goes on with the loaded map in a new segment; ``pose`` is about where the sensor is in the map frame.
+
+        A map that shows most of its places more often than keep_views asks for is pruned first. Returns the node that
+        each node of the map became, or by which its place is known now.
+        """
         resume = self._naming("map/resume")
         if self._state is not State.NOT_MAPPING:
             raise StateError(f"{resume}: the state is {self._state.value}; call {self._naming('map/stop')} first")
@@ -185,9 +189,10 @@ class Session:
             )
         if path:
             self._prepare("map/resume", path)
-        self._mapper.begin_session((x, y, theta))
+        carriers = self._mapper.begin_session((x, y, theta))
         self._path = path
         self._state = State.MAPPING
+        return carriers
 
     def notify_docked(self) -> bool:
         """Says that the robot stands at the dock it saw earlier; whether what it sees now fits the dock."""

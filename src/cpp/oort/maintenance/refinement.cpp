@@ -18,10 +18,12 @@
 namespace oort {
 namespace {
 
-std::vector<int> variables_of(const Graph& graph) {
+std::vector<int> variables_of(const Graph& graph, std::uint64_t first_free) {
   std::vector<int> variables;
   int count = 0;
-  for (const bool is_anchor : find_anchors(graph)) variables.push_back(is_anchor ? -1 : count++);
+  for (const bool is_anchor : find_anchors(graph)) {
+    variables.push_back(is_anchor || variables.size() < first_free ? -1 : count++);
+  }
   return variables;
 }
 
@@ -106,14 +108,14 @@ std::vector<Pose2> solved(const std::vector<Pose2>& poses, const std::vector<int
 
 }  // namespace
 
-RefinementCounts refine(Map& map) {
+RefinementCounts refine(Map& map, std::uint64_t first_free) {
   RefinementCounts counts;
   std::vector<std::vector<SurfacePiece>> pieces;
   for (const PointCloud& cloud : map.clouds) pieces.push_back(surface_pieces(cloud));
   std::vector<Pose2> poses;
   for (const Node& node : map.graph.nodes) poses.push_back(node.pose);
   const std::vector<ViewPair> pairs = view_pairs(poses, pieces);
-  const std::vector<int> variables = variables_of(map.graph);
+  const std::vector<int> variables = variables_of(map.graph, first_free);
   const std::vector<Link> known = known_links(map.graph);
 
   ScanLinks scans = link_scans(pieces, pairs, poses, RefinementTuning::kInitialDistance, false);

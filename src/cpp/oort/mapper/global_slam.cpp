@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "oort/graph/tuning.hpp"
+#include "oort/maintenance/outdated.hpp"
 #include "oort/maintenance/refinement.hpp"
 #include "oort/mapper/tuning.hpp"
 
@@ -27,6 +28,7 @@ void GlobalSlam::set_map(const Map& map) {
 void GlobalSlam::begin_session() {
   loops_ = LoopClosureBuilder(parameters_);
   not_looked_from_.clear();
+  session_begin_ = map_.node_count();
 }
 
 void GlobalSlam::add(const NodeAddition& node) {
@@ -49,7 +51,7 @@ Correction GlobalSlam::work(WorkMeter& meter) {
     const WorkClock clock(work_seconds_.candidates);
     loops_.look(map(), map_.segments(), not_looked_from_.front(), &meter);
     not_looked_from_.pop_front();
-    return {{}, std::nullopt, counts_};
+    return {{}, std::nullopt, counts_, {}};
   }
   const WorkClock clock(work_seconds_.matching);
   return found(loops_.work(map(), map_.segments(), counts_.loops, closure_log_, &meter));
@@ -68,9 +70,13 @@ Correction GlobalSlam::finish() {
     all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
   }
   if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(MapperTuning::kFinalIterations);
-  if (parameters_.final_refinement) counts_.refinement = refine(map_.edit());
+  if (parameters_.final_refinement) counts_.refinement = refine(map_.edit(), first_free());
   all.solution = map_.solution();
   all.counts = counts_;
+  if (parameters_.keep_views > 0 && remove_outdated(map_.edit(), map_.segments(), session_begin_) > 0) {
+    all.clouds = map().clouds;
+    forget_submaps();
+  }
   return all;
 }
 
@@ -81,7 +87,7 @@ Correction GlobalSlam::link_dock(const std::vector<Location>& locations) {
     const WorkClock clock(work_seconds_.matching);
     closure = docks_.find(map(), map_.segments(), map_.node_count() - 1, counts_.docks);
   }
-  if (!closure) return {{}, std::nullopt, counts_};
+  if (!closure) return {{}, std::nullopt, counts_, {}};
   found({*closure});
   solve_anew(MapperTuning::kIterations);
   Correction correction = solved();
@@ -91,12 +97,12 @@ Correction GlobalSlam::link_dock(const std::vector<Location>& locations) {
 
 Correction GlobalSlam::found(const std::vector<Closure>& closures) {
   for (const Closure& closure : closures) schedule_.add_closure(map_.add(closure));
-  return {closures, std::nullopt, counts_};
+  return {closures, std::nullopt, counts_, {}};
 }
 
 Correction GlobalSlam::solved() {
   count_switches();
-  return {{}, map_.solution(), counts_};
+  return {{}, map_.solution(), counts_, {}};
 }
 
 void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {
@@ -130,7 +136,7 @@ void GlobalSlam::solve_anew(int max_iterations) {
 OptimizerSummary GlobalSlam::solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter) {
   const WorkClock clock(work_seconds_.solving);
   OptimizerOptions options = optimizer_options(parameters_, max_iterations);
-  options.first_free_node = first_free_node;
+  options.first_free_node = std::max(first_free_node, first_free());
   options.meter = meter;
   OptimizerSummary summary = optimize(map_.edit().graph, options);
   ++counts_.solves;

@@ -24,6 +24,8 @@ struct Correction {
   std::vector<Closure> closures;
   std::optional<Solution> solution;
   GlobalCounts counts;  ///< since the beginning
+  /// The clouds without what newer ones contradict, if anything was.
+  std::optional<PointClouds> clouds;
 };
 
 /// Global SLAM: looks for loops, matches and confirms them, solves the graph. It works on a map of its own, to which
@@ -36,6 +38,8 @@ class GlobalSlam {
   void set_map(const Map& map);
   /// A new session: loops are looked for as on a map that was just loaded.
   void begin_session();
+  /// Clouds were changed: what was drawn of them shows them as they were.
+  void forget_submaps() { loops_ = LoopClosureBuilder(parameters_); }
   void add(const NodeAddition& node);
 
   /// A node's cloud with some readings taken out. What was drawn of it stays until begin_session().
@@ -66,6 +70,8 @@ class GlobalSlam {
   void solve_anew(int max_iterations);
   OptimizerSummary solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter);
   void count_switches();
+  /// The nodes before it keep their poses.
+  std::uint64_t first_free() const { return parameters_.frozen_map ? session_begin_ : 0; }
 
   Parameters parameters_;
   GrowingMap map_;
@@ -73,6 +79,7 @@ class GlobalSlam {
   DockGraphBuilder docks_;
   SolveSchedule schedule_;
   std::deque<std::uint64_t> not_looked_from_;  // nodes for which no candidates were looked for yet
+  std::uint64_t session_begin_ = 0;            // the session's first node
   std::vector<bool> is_on_;                    // each switchable edge, at the last solution
   GlobalCounts counts_;
   ClosureLog closure_log_;

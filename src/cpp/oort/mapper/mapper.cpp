@@ -3,10 +3,12 @@
 #include "oort/mapper/mapper.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
 #include "oort/geometry/work_meter.hpp"
+#include "oort/maintenance/prune.hpp"
 #include "oort/map/locations.hpp"
 #include "oort/map/map_check.hpp"
 #include "oort/mapper/tuning.hpp"
@@ -69,25 +71,42 @@ bool Mapper::notify_docked() {
   return !correction.closures.empty();
 }
 
-void Mapper::begin_session(const Pose2& T_map_sensor) {
+std::vector<std::uint64_t> Mapper::begin_session(const Pose2& T_map_sensor) {
   check_reach(T_map_sensor, "Mapper.begin_session: the start pose");
   take_effect(lane_->settle());
+  std::vector<std::uint64_t> carriers = prune();
   lane_->slam().begin_session();
   session_begin_ = map_.node_count();
   if (map_.node_count() == 0) {
     local_.begin_map();
-    return;
+    return carriers;
   }
   const std::uint64_t nearest = nearest_node(map().graph, T_map_sensor.translation());
   local_.begin_session({T_map_sensor, nearest, between(map().graph.nodes[nearest].pose, T_map_sensor)},
                        map_.node_count());
+  return carriers;
+}
+
+/// What became of each node.
+std::vector<std::uint64_t> Mapper::prune() {
+  if (parameters_.keep_views > 0) {
+    const std::optional<Pruned> pruned = oort::prune(map(), {static_cast<unsigned>(parameters_.keep_views), false});
+    if (pruned) {
+      use(pruned->map);
+      tracking_ = TrackingMonitor();  // it counts nodes
+      return pruned->carrier;
+    }
+  }
+  std::vector<std::uint64_t> same(map_.node_count());
+  std::iota(same.begin(), same.end(), std::uint64_t{0});
+  return same;
 }
 
 void Mapper::finish() {
   take_effect(lane_->settle());
   const bool cleaned = remove_body();
   take_effect({lane_->slam().finish()});
-  if (cleaned) lane_->slam().begin_session();  // what it has drawn shows the body still
+  if (cleaned) lane_->slam().forget_submaps();
 }
 
 /// Takes the robot's own body out of the clouds of this session from before it was known. Whether there was any.
@@ -108,11 +127,15 @@ void Mapper::set_map(const Map& map) {
   const std::optional<std::string> defect = find_defect(map);
   if (defect) throw InputError("Mapper.set_map: this map cannot be used: " + *defect);
   lane_->settle();
+  use(map);
+  local_.begin_map();
+}
+
+void Mapper::use(const Map& map) {
   lane_->slam().set_map(map);
   map_.set_map(lane_->slam().map());
   global_counts_ = lane_->slam().counts();
   session_begin_ = map_.node_count();
-  local_.begin_map();
 }
 
 Pose2 Mapper::sensor_pose() const {
@@ -170,6 +193,7 @@ bool Mapper::take_effect(const std::vector<Correction>& corrections) {
   for (const Correction& correction : corrections) {
     for (const Closure& closure : correction.closures) map_.add(closure);
     if (correction.solution) map_.apply(*correction.solution);
+    if (correction.clouds) map_.edit().clouds = *correction.clouds;
     solved = solved || correction.solution.has_value();
     closed = closed || !correction.closures.empty();
     global_counts_ = correction.counts;

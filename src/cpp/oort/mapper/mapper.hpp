@@ -60,8 +60,10 @@ class Mapper {
   /// Returns whether a closure was found. Throws StateError if there is no scan yet.
   bool notify_docked();
 
-  /// The next scan begins a new segment at about this pose of the map.
-  void begin_session(const Pose2& T_map_sensor);
+  /// The next scan begins a new segment at about this pose of the map. A map that shows most of its places more often
+  /// than keep_views asks for is pruned first (maintenance/prune.hpp). Returns the node that each node of the map
+  /// became or is carried by, in the order of their ids.
+  std::vector<std::uint64_t> begin_session(const Pose2& T_map_sensor);
 
   /// The next scan makes a node whose edge to the last one is very uncertain.
   void resume_from_paused() { local_.interrupt(); }
@@ -100,6 +102,8 @@ class Mapper {
   const ClosureLog& closure_attempts() const;
 
  private:
+  std::vector<std::uint64_t> prune();
+  void use(const Map& map);
   bool take_effect(const std::vector<Correction>& corrections);
   void add(const TrajectoryNode& node);
   bool remove_body();

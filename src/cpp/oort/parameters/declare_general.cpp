@@ -49,6 +49,14 @@ void declare_general(const Section& v, Parameters& p) {
            "The median error of 20 made-up homes falls from 0.013 m to 0.007 m, with a view of 90 degrees from 0.037 m "
            "to "
            "0.024 m; Intel with readings cut at 3 m from 0.0177 m to 0.0165 m.");
+  v(p.keep_views, "keep_views", {3, "views", {0, 1000}},
+    "How many views of a piece of surface from one side a map keeps when it is gone on with; what newer views "
+    "contradict is taken out of older ones when mapping stops (docs/lifelong.md). 0: all stays as it was seen.")
+      .own(0, "A map that is gone on with day after day otherwise grows with each, and shows what was moved away.");
+  v(p.frozen_map, "frozen_map", false,
+    "Whether the nodes of a map that is gone on with keep their poses, so that what was drawn by hand on top of it "
+    "stays right; only new nodes are moved by solutions.")
+      .own(false);
   v(p.robust_kernel, "robust_kernel", {"switchable", {"switchable", "huber"}},
     "How a loop closure that disagrees loses its weight: by a switch, or, as in Cartographer, by Huber's loss.")
       .own("switchable");

@@ -289,6 +289,8 @@ struct Parameters {
   int min_pointcloud_size;
   double switchable_constraint_scale;
   bool final_refinement;
+  int keep_views;
+  bool frozen_map;
   std::string robust_kernel;
   double huber_scale;
   OutputMapParameters output_map;

@@ -18,6 +18,8 @@ _TOOLS = {
     "simulate": "make up a home and a drive through it",
     "evaluate": "compare a trajectory with what is known to be true",
     "graph": "solve a pose graph in the format of g2o or TORO",
+    "prune": "write a saved map with only the views that it needs",
+    "history": "list the earlier versions of a saved map, or go back to one",
     "migrate": "write a saved map in the newest format",
     "parameters": "print the table of parameters",
 }

@@ -46,13 +46,16 @@ class _Caller:
     recorder: TrajectoryRecorder
 
     def __call__(self, number: int, event: Event) -> None:
+        before = self.session.map.node_poses if event.call == "map/resume" else None
         try:
-            self.session.call(event.call, event.args)
+            told = self.session.call(event.call, event.args)
         except OortError as error:
             raise type(error)(f"event {number} ({event.call} at {event.t}): {error}") from error
         self.session.save_to("")
         if event.call in ("map/clear", "map/load"):
             self.recorder.forget_nodes()
+        if before is not None:
+            self.recorder.renumber(told, before, self.session.map.node_poses)
 
 
 def replay(

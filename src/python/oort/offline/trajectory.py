@@ -46,6 +46,17 @@ class TrajectoryRecorder:
         self._nodes = [_NO_NODE] * len(self._nodes)
         self._made_node = [False] * len(self._made_node)
 
+    def renumber(self, carriers: Sequence[int], before: NDArray[np.float64], after: NDArray[np.float64]) -> None:
+        """The map was pruned: each node became another or is carried by another, as its index in ``carriers`` tells.
+
+        ``before`` and ``after`` are the nodes' poses.
+        """
+        moved = between(after[np.array(carriers, dtype=np.int64)], before)
+        for scan, node in enumerate(self._nodes):
+            if node != _NO_NODE:
+                x, y, theta = compose(moved[node], self._relative[scan]).tolist()
+                self._nodes[scan], self._relative[scan] = carriers[node], (x, y, theta)
+
     def base_poses(self, map_: Map, first_node: int = 0) -> NDArray[np.float64]:
         """T_map_base of every scan, (n, 3), in their order, at the map's solution.
 

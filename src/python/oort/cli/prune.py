@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``oort prune IN OUT``: writes a saved map with only the views that it needs."""
+
+import argparse
+from collections.abc import Sequence
+
+from oort.cli.tool import add_checksum_argument, run_tool
+from oort.offline.prune import prune
+from oort.parameters import read_parameters
+
+
+def _views(text: str) -> int:
+    views = int(text)
+    if views < 1:
+        raise argparse.ArgumentTypeError(f"{text}: choose at least 1")
+    return views
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort prune",
+        description="Writes a saved map that grew over many sessions with only the views that it needs. Places, docks "
+        "and poses stay; what newer sessions contradict is taken out.",
+    )
+    parser.add_argument("source", metavar="IN", help="the path of the map")
+    parser.add_argument("target", metavar="OUT", help="where the new one goes")
+    parser.add_argument(
+        "--views",
+        type=_views,
+        metavar="N",
+        help="of a piece of surface from one side (default: keep_views of params.json)",
+    )
+    add_checksum_argument(parser)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
+    arguments = _parser().parse_args(argv)
+    views = arguments.views or int(read_parameters().get("keep_views"))
+    return run_tool(
+        "oort prune",
+        lambda: print(prune(arguments.source, arguments.target, views, ignore_checksum=arguments.ignore_checksum)),
+        arguments.source,
+    )
