@@ -140,6 +140,13 @@ TEST_F(Storage, SavesTheWholeMapWhereMetadataAloneWouldNotFit) {
   };
   saves_all(make_map());   // nothing is there
   saves_all(make_map(6));  // a location at a node that the file does not have
+  Map other = make_map(6);
+  for (std::uint64_t node = 0; node < other.clouds.size(); ++node) {
+    PointCloud cloud = other.clouds[node];
+    cloud.time += 1.0;
+    other.clouds.set(node, std::move(cloud));
+  }
+  saves_all(other);  // its nodes have the same ids, but are others
   write_file(base_ + ".map_capnp", "damaged");
   saves_all(make_map(6));
 }

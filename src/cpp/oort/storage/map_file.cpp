@@ -3,6 +3,7 @@
 #include "oort/storage/map_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -53,13 +54,25 @@ Map decode(const SetContent& content, const std::string& map_path, const std::st
   return map;
 }
 
-/// Whether the locations can be read together with the map as it is on the disk.
+bool is_same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+bool is_same(const PointCloud& a, const PointCloud& b) {
+  return a.time == b.time &&
+         std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                    [](const Point2& p, const Point2& q) { return is_same(p.x, q.x) && is_same(p.y, q.y); });
+}
+
+/// Whether the locations can be read together with the map as it is on the disk: the nodes that they need are there,
+/// and are the same nodes, which they are not if another map lies there, or the map before it was pruned.
 bool fits_on_disk(FileSet& files, const Map& map) {
   try {
-    const SetContent content = files.read();
-    const std::size_t node_count = decode_map(content.map, files.map_path()).graph.nodes.size();
-    return std::all_of(map.locations.begin(), map.locations.end(),
-                       [&](const Location& location) { return location.node_id < node_count; });
+    const Map there = decode_map(files.read().map, files.map_path());
+    return std::all_of(map.locations.begin(), map.locations.end(), [&](const Location& location) {
+      return location.node_id < there.clouds.size() &&
+             is_same(there.clouds[location.node_id], map.clouds[location.node_id]);
+    });
   } catch (const MapFileError&) {
     return false;
   }
