@@ -29,7 +29,7 @@ if [ $ros = ON ]; then
   done
   packages+=(python3-genpy)
 fi
-[ $test = ON ] && packages+=(libgtest-dev clang-format-14 clang-tidy-14 chromium)
+[ $test = ON ] && packages+=(libgtest-dev clang-format-14 clang-tidy-14 chromium doxygen)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
@@ -47,7 +47,7 @@ fi
 # Debian's own interpreter, with its site packages: rospy lives there.
 [ -x .venv/bin/python ] || /usr/bin/python3 -m venv --system-site-packages .venv
 .venv/bin/python -m pip install --quiet --disable-pip-version-check "pip>=23.1"  # the first with -C
-.venv/bin/pip install --quiet "scikit-build-core>=0.10" "pybind11>=2.12"
+.venv/bin/pip install --quiet "scikit-build-core>=0.10" "pybind11==3.1.0"
 echo "Building Oort; the first time that takes some minutes."
 .venv/bin/pip install --quiet --no-build-isolation -C build-dir=build/dev \
   -C cmake.define.OORT_TESTS=$test -C cmake.define.OORT_WERROR=$test -e ".$extra"

@@ -5,7 +5,8 @@
 
     scripts/tidy.py BUILD [--all]      BUILD holds compile_commands.json
 
-Without --all the static analyser, other slow checks and the tests are left out. Stamps are in BUILD/tidy.
+Without --all the static analyser, other slow checks and the tests are left out. Stamps are in BUILD/tidy, of either way
+in a folder of its own.
 """
 
 import argparse
@@ -46,12 +47,12 @@ SLOW = (
 SLOW_FOLDERS = ("tests", "third_party/frsm/tests", "src/cpp/bindings")
 """Sources that only --all looks at: GoogleTest's and pybind11's headers cost more than all of the engine."""
 
-_INCLUDE = re.compile(rb'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
+_INCLUDE = re.compile(rb'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 
 
 @cache
 def included(path: Path, folders: tuple[Path, ...]) -> frozenset[Path]:
-    """The file itself and those it includes in quotes, where they are found."""
+    """The file itself and those of the project that it includes: in quotes, or as a library's (frsm) in brackets."""
     return frozenset([path]).union(*(included(header, folders) for header in _headers(path, folders)))
 
 
@@ -93,8 +94,8 @@ def main() -> int:
     checks = [] if args.all else ["--checks=" + ",".join(f"-{check}" for check in SLOW)]
     version = subprocess.run([TIDY, "--version"], capture_output=True, text=True, check=True).stdout
     settings = version + (ROOT / ".clang-tidy").read_text() + " ".join(checks)
-    stamps = args.build / "tidy"
-    stamps.mkdir(exist_ok=True)
+    stamps = args.build / "tidy" / ("all" if args.all else "usual")
+    stamps.mkdir(parents=True, exist_ok=True)
     commands = json.loads((args.build / "compile_commands.json").read_text())
     sources = {Path(entry["file"]): entry["command"] for entry in commands}
     keys = {

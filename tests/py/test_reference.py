@@ -13,7 +13,7 @@ from conftest import ROOT
 
 def test_reference_pages(tmp_path: Path) -> None:
     if shutil.which("doxygen") is None:
-        pytest.skip("doxygen is not installed")
+        pytest.skip("doxygen is not there: scripts/setup.sh --test installs it")
     run = subprocess.run([ROOT / "scripts/docs.sh", tmp_path], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
     assert run.stderr == ""
