@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is there in ROS 2 alone: the names that users of slam_toolbox know, namespaces, parameters, qualities, time."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +38,17 @@ def ask(peer: RclpyPeer, service: str, kind: str = "Empty", node: str = NODE, **
     return reply.response
 
 
+@pytest.mark.parametrize("module", ["oort.node", "oort.node.localizer"])
+def test_without_the_ros_that_is_asked_for(module: str) -> None:
+    asked = {**os.environ, "ROS_VERSION": "1"}
+    ended = subprocess.run(
+        [sys.executable, "-P", "-m", module], env=asked, capture_output=True, text=True, timeout=60.0, check=False
+    )
+    assert ended.returncode == 1
+    (line,) = ended.stderr.splitlines()
+    assert "no module named 'rospy'. The node needs ROS 2, whose setup.bash is to be sourced" in line
+
+
 def test_slam_toolboxs_names(peer: RclpyPeer, tmp_path: Path) -> None:
     with running(peer, tmp_path):
         refused = peer.call(f"{NODE}/save_map", "SetString", data="maps/home")
@@ -62,6 +76,7 @@ def test_slam_toolboxs_names(peer: RclpyPeer, tmp_path: Path) -> None:
         ask(peer, "pause_new_measurements")
         assert ask(peer, "map/state", "GetString").data == "mapping"
         ask(peer, "reset")
+        assert load_map(str(tmp_path / "own.previous")), "the map of before is kept"
         assert ask(peer, "map/state", "GetString").data == "mapping"
         assert ask(peer, "map/num_nodes", "GetUInt").data == 0
         ask(peer, "deserialize_map", "SetString", data=str(tmp_path / "copy"))
