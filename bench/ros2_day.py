@@ -181,10 +181,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         peer = RclpyPeer(folder, 101 + os.getpid() % 100)
         try:
             load = os.getloadavg()[0]
-            print("| what | measured |\n|---|---|")
-            for part in (mapping, again):
-                for what, measured in part(peer, folder, drive, args.rate):
-                    print(f"| {what} | {measured} |", flush=True)
+            rows = [row for part in (mapping, again) for row in part(peer, folder, drive, args.rate)]
+            print("| what | measured |\n|---|---|")  # after what the nodes have printed
+            print("\n".join(f"| {what} | {measured} |" for what, measured in rows))
             print(f"\nload before and after: {load:.1f}, {os.getloadavg()[0]:.1f}")
         finally:
             peer.close()
