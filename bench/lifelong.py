@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A map for life: many drives through one simulated home, each resumed on the last one's map.
 
-    .venv/bin/python bench/lifelong.py [--days N] [--home SEED] [--out DIR]
+    .venv/bin/python bench/lifelong.py [--days N] [--first DAY] [--home SEED] [--out DIR]
 
 Each day has another way, another person and other noise; from --moves on furniture stands elsewhere and doors stand at
 other angles every so many days. Prints a row for each day and writes days.json and days.png to --out, with the last
@@ -179,6 +179,7 @@ def main() -> None:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--days", type=int, default=10)
+    parser.add_argument("--first", type=int, default=1, metavar="DAY", help="go on with the run in --out from here")
     parser.add_argument("--home", type=int, default=3, metavar="SEED")
     parser.add_argument("--minutes", type=float, default=4.0, help="of each drive, at least")
     parser.add_argument("--moves", type=int, default=4, metavar="DAY", help="the first day with moves; 0: none")
@@ -189,8 +190,10 @@ def main() -> None:
     names = [field.name for field in fields(Day)]
     print(_row(names), _row(["---"] * len(names)), sep="\n", flush=True)
     days: list[Day] = []
+    if arguments.first > 1:
+        days = [Day(**day) for day in json.loads((arguments.out / "days.json").read_text())][: arguments.first - 1]
     context = multiprocessing.get_context("spawn")
-    for day in range(arguments.days):
+    for day in range(len(days), arguments.days):
         queue: multiprocessing.Queue[Day] = context.Queue()
         child = context.Process(target=_child, args=(arguments, day, queue))
         child.start()
