@@ -40,6 +40,7 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     "tool",
     [
         "replay",
+        "check",
         "localize",
         "simulate",
         "evaluate ate",

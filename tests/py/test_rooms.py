@@ -23,6 +23,7 @@ ORDER = [
     "history",
     "events",
     "mapper",
+    "diagnosis",
     "naming",
     "locations",
     "session",
@@ -30,6 +31,7 @@ ORDER = [
     "simulate",
     "live",
     "export",
+    "image_maps",
     "evaluation",
     "report",
     "offline",
@@ -40,7 +42,7 @@ ORDER = [
 ]
 """``commands`` are the modules that ``python -m`` runs: they only call a tool of the room ``cli``."""
 
-COMMANDS = {"replay", "localize", "render", "merge", "evaluate", "graph", "migrate"}
+COMMANDS = {"replay", "check", "localize", "render", "merge", "evaluate", "graph", "migrate"}
 LONGEST_COMMAND = 10  # lines
 
 MIDDLEWARE = {"rospy", "rclpy", "tf2_ros", "oort_msgs", "rosgraph", "genpy"}

@@ -127,6 +127,21 @@ void bind_localizer(py::module_& m) {
           py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
           py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
           "Takes the next scan as Mapper.add_ranges does. Raises InputError; nothing changes then.")
+      .def(
+          "add_ranges_of_other",
+          [](Localizer& l, const PoseTuple& mount, double time, double angle_min, double angle_increment,
+             double range_min, double range_max,
+             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
+             const SweepTuple& sweep) {
+            l.add_scan_of_other(pose_of(mount),
+                                {time, angle_min, angle_increment, range_min, range_max,
+                                 std::vector<float>(ranges.data(), ranges.data() + ranges.size())},
+                                pose_of(odometry), sweep_of(sweep));
+          },
+          py::arg("sensor_on_base"), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
+          py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
+          py::arg("sweep") = py::none(),
+          "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.")
       .def_property_readonly(
           "state", [](const Localizer& l) { return std::string(to_string(l.state())); },
           "\"searching\", \"tracking\", \"uncertain\" or \"lost\".")

@@ -7,10 +7,13 @@
 
 #include <array>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "bindings.hpp"
 #include "oort/map/locations.hpp"
 #include "oort/map/map.hpp"
+#include "oort/map/map_of_views.hpp"
 #include "oort/render/crop.hpp"
 #include "oort/render/render.hpp"
 #include "oort/storage/map_file.hpp"
@@ -303,6 +306,19 @@ void bind_map(py::module_& m) {
   bind_map_class(m);
   bind_storage(m);
   bind_rendering(m);
+  m.def(
+      "map_of_views",
+      [](const std::vector<PoseTuple>& poses, const std::vector<std::vector<std::array<double, 2>>>& views) {
+        std::vector<Pose2> T_map_sensor;
+        for (const PoseTuple& pose : poses) T_map_sensor.push_back(pose_of(pose));
+        std::vector<PointCloud> clouds(views.size());
+        for (std::size_t k = 0; k < views.size(); ++k) {
+          for (const auto& [x, y] : views[k]) clouds[k].points.push_back({x, y, 1.0});
+        }
+        return map_of_views(T_map_sensor, std::move(clouds));
+      },
+      py::arg("poses"), py::arg("views"),
+      "A map without a graph of the returns (x, y, in the sensor frame) seen from each pose (T_map_sensor).");
 }
 
 }  // namespace oort

@@ -147,7 +147,14 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["contradictions"] = statistics.trajectory.contradictions;
   dict["tracking"] = dict_of(statistics.tracking);
   dict["odometry_faults"] = dict_of(statistics.odometry_fault_count, statistics.odometry_faults);
-  dict["laser"] = dict_of(statistics.laser);
+  py::dict scale;
+  scale["translation"] = statistics.odometry_way_scale;
+  scale["rotation"] = statistics.odometry_turn_scale;
+  dict["odometry_scale"] = scale;
+  dict["laser"] = dict_of(statistics.lasers.front());
+  py::list others;
+  for (std::size_t k = 1; k < statistics.lasers.size(); ++k) others.append(dict_of(statistics.lasers[k]));
+  dict["other_lasers"] = others;
   dict["loops"] = dict_of(statistics.global.loops);
   dict["docks"] = dict_of(statistics.global.docks);
   dict["solved"] = dict_of(statistics.global.solved);
@@ -261,6 +268,21 @@ void bind_mapping(py::module_& m) {
           "Takes the next scan with T_odom_base at its stamp and, for one whose beams were not measured at once, where "
           "the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError; "
           "nothing changes then.")
+      .def(
+          "add_ranges_of_other",
+          [](Mapper& mapper, const PoseTuple& mount, double time, double angle_min, double angle_increment,
+             double range_min, double range_max,
+             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
+             const SweepTuple& sweep) {
+            mapper.add_scan_of_other(pose_of(mount),
+                                     {time, angle_min, angle_increment, range_min, range_max,
+                                      std::vector<float>(ranges.data(), ranges.data() + ranges.size())},
+                                     pose_of(odometry), sweep_of(sweep));
+          },
+          py::arg("sensor_on_base"), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
+          py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
+          py::arg("sweep") = py::none(),
+          "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.")
       .def("notify_docked", &Mapper::notify_docked, py::call_guard<py::gil_scoped_release>(),
            "Links the current place to the dock. Whether a closure was found.")
       .def(

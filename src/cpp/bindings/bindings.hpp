@@ -50,6 +50,7 @@ void bind_graph(pybind11::module_& m);
 void bind_odometry(pybind11::module_& m);
 void bind_mapping(pybind11::module_& m);
 void bind_localization(pybind11::module_& m);
+void bind_sensor(pybind11::module_& m);
 void bind_merging(pybind11::module_& m);
 
 }  // namespace oort

@@ -23,5 +23,6 @@ PYBIND11_MODULE(_core, m) {
   oort::bind_odometry(m);
   oort::bind_mapping(m);
   oort::bind_localization(m);
+  oort::bind_sensor(m);
   oort::bind_merging(m);
 }

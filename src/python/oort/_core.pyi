@@ -352,6 +352,19 @@ class Mapper:
         the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError;
         nothing changes then.
         """
+    def add_ranges_of_other(
+        self,
+        sensor_on_base: tuple[float, float, float],
+        time: float,
+        angle_min: float,
+        angle_increment: float,
+        range_min: float,
+        range_max: float,
+        ranges: ArrayLike,
+        odometry: tuple[float, float, float],
+        sweep: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None,
+    ) -> None:
+        """Takes a scan of another laser, which joins the next one of the main laser. Raises InputError."""
     def begin_session(self, sensor_on_map: tuple[float, float, float]) -> list[int]:
         """The next scan begins a new trajectory segment at about this pose of the map, which is pruned first if it
         shows most places more often than keep_views asks for. The node that each node became or is carried by.
@@ -476,6 +489,19 @@ class Localizer:
         sweep: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None,
     ) -> None:
         """Takes the next scan as Mapper.add_ranges does. Raises InputError; nothing changes then."""
+    def add_ranges_of_other(
+        self,
+        sensor_on_base: tuple[float, float, float],
+        time: float,
+        angle_min: float,
+        angle_increment: float,
+        range_min: float,
+        range_max: float,
+        ranges: ArrayLike,
+        odometry: tuple[float, float, float],
+        sweep: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None,
+    ) -> None:
+        """Takes a scan of another laser, which joins the next one of the main laser. Raises InputError."""
     def start_at(self, sensor_on_map: tuple[float, float, float], covariance: ArrayLike) -> None:
         """Says about where the sensor is at the next scan; the covariance is along the axes of the map."""
     def start_searching(self) -> None:
@@ -498,6 +524,31 @@ class Localizer:
     @property
     def support(self) -> float:
         """How well the latest scan fitted, at most 1."""
+
+class ReferenceScan:
+    """A scan that others are laid on by themselves, without a map."""
+    def __init__(
+        self,
+        time: float,
+        angle_min: float,
+        angle_increment: float,
+        range_min: float,
+        range_max: float,
+        ranges: ArrayLike,
+    ) -> None: ...
+    def align(
+        self,
+        time: float,
+        angle_min: float,
+        angle_increment: float,
+        range_min: float,
+        range_max: float,
+        ranges: ArrayLike,
+        guesses: Sequence[tuple[float, float, float]],
+    ) -> tuple[tuple[float, float, float], float, float, bool]:
+        """Lays a scan on this one from some guesses (T_reference_scan): the pose with the least cost, the cost (mean
+        squared distance [m^2]), the share of points that lie on the reference, and whether a direction is left open.
+        """
 
 class Merged:
     """What came of merging two maps."""
@@ -534,6 +585,9 @@ class Merged:
 
 def load_map(path: str, ignore_checksum: bool = False) -> Map:
     """Reads a map given by its base path, one of its files, or X.capnp. Raises MapFileError."""
+
+def map_of_views(poses: Sequence[tuple[float, float, float]], views: Sequence[Sequence[Sequence[float]]]) -> Map:
+    """A map without a graph of the returns (x, y, in the sensor frame) seen from each pose (T_map_sensor)."""
 
 def merge_maps(a: Map, b: Map, parameters: Parameters = ..., T_a_b: tuple[float, float, float] | None = None) -> Merged:
     """Joins two maps of the same home into one in the frame of the first. T_a_b is about where the second one's origin

@@ -63,6 +63,15 @@ class Localizer(_core.Localizer):
         self.add_ranges(*scan.readings, as_pose(odometry, "Localizer.add_scan: odometry"), scan.sweep)
         return self.state
 
+    def add_scan_of_other(self, scan: LaserScan, odometry: ArrayLike, sensor_on_base: ArrayLike) -> None:
+        """Takes a scan of another laser, which sits at ``sensor_on_base``: it joins the next scan of the main laser.
+
+        Raises InputError as add_scan().
+        """
+        pose = as_pose(odometry, "Localizer.add_scan_of_other: odometry")
+        mount = as_pose(sensor_on_base, "Localizer.add_scan_of_other: sensor_on_base")
+        self.add_ranges_of_other(mount, *scan.readings, pose, scan.sweep)
+
     @property
     def T_map_base(self) -> Pose | None:  # noqa: N802
         """The base's pose at the latest scan; None while searching."""
@@ -89,6 +98,9 @@ def find_start(map_: Map, parameters: Parameters, recording: Recording) -> Pose:
     localizer = Localizer(ReferenceMap(map_, parameters), parameters, recording.sensor_on_base)
     first: Scan | None = None
     for scan in recording.scans():
+        if scan.mount is not None:
+            localizer.add_scan_of_other(scan, scan.odometry, scan.mount)
+            continue
         first = first or scan
         localizer.add_scan(scan, scan.odometry)
         if localizer.T_map_odom is not None:

@@ -33,3 +33,12 @@ class Mapper(_core.Mapper):
         set_map() without begin_session().
         """
         return self.add_ranges(*scan.readings, as_pose(odometry, "Mapper.add_scan: odometry"), scan.sweep)
+
+    def add_scan_of_other(self, scan: LaserScan, odometry: ArrayLike, sensor_on_base: ArrayLike) -> None:
+        """Takes a scan of another laser, which sits at ``sensor_on_base``: it joins the next scan of the main laser.
+
+        Raises InputError as add_scan().
+        """
+        pose = as_pose(odometry, "Mapper.add_scan_of_other: odometry")
+        mount = as_pose(sensor_on_base, "Mapper.add_scan_of_other: sensor_on_base")
+        self.add_ranges_of_other(mount, *scan.readings, pose, scan.sweep)

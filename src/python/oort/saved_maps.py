@@ -61,7 +61,7 @@ def _name_other(path: str) -> str:
         if ending in _IMAGES:
             return (
                 f"{candidate} is an image for map_server, not an Oort map: it holds no scans to match "
-                "with or to go on from. Map the place with 'oort replay' (which writes such an image too), or use amcl"
+                "with or to go on from; only 'oort localize' takes its .yaml. Map the place with 'oort replay'"
             )
         if ending in _MAPS_OF_OTHERS:
             return f"{candidate} is {_MAPS_OF_OTHERS[ending]}, not an Oort map"

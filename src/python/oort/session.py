@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from oort._core import Map, Parameters, Saved, ScanResult, normalise_map_path, save_map, save_metadata
+from oort.diagnosis import Observer, Trouble, diagnose
 from oort.errors import StateError
 from oort.locations import Locations, Pose
 from oort.mapper import Mapper
@@ -120,13 +121,25 @@ class Session:
             ) from error
 
     def add_scan(self, scan: Scan) -> ScanResult | None:
-        """Takes one scan with its odometry; None if the state is not mapping."""
+        """Takes one scan with its odometry; None if the state is not mapping, or it joins the main laser's next."""
         if self._state is not State.MAPPING:
+            return None
+        if scan.mount is not None:
+            self._mapper.add_scan_of_other(scan, scan.odometry, scan.mount)
             return None
         result = self._mapper.add_scan(scan, scan.odometry)
         if self._locations.settle():
             self._write(Saved.METADATA)
         return result
+
+    def observe(self, scan: Scan) -> None:
+        """Looks at a scan that was mapped once more, for troubles(): apart from add_scan(), which a robot waits for."""
+        if scan.mount is None:
+            self._observer.add(scan)
+
+    def troubles(self) -> list[Trouble]:
+        """What the scans that were observed, and their mapping, show to be wrong with the setup or the recording."""
+        return diagnose(self._observer, self._mapper.statistics)
 
     # ---- map calls ----
 
@@ -149,6 +162,7 @@ class Session:
         """Says where the sensor sits on the base (T_base_sensor). Raises StateError once scans are being mapped."""
         self._mapper.mount_sensor(sensor_on_base)
         self._sensor_on_base = sensor_on_base
+        self._observer = Observer(sensor_on_base)
 
     def save_to(self, path: str) -> None:
         """Sets where the map is saved from now on; empty for nowhere."""
@@ -293,6 +307,7 @@ class Session:
 
     def _use(self, mapper: Mapper) -> None:
         self._mapper = mapper
+        self._observer = Observer(self._sensor_on_base)
         self._locations = Locations(mapper, self._naming)
 
 

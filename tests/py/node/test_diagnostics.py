@@ -45,6 +45,7 @@ WELL = MappingHealth(
     seconds_waiting=0.02,
     waiting_for="no odom -> base_footprint since 0.0 s",
     imu_trouble="",
+    troubles=[],
     clock_jumps=0,
 )
 EMPTY = replace(

@@ -68,8 +68,12 @@ def test_a_mount_must_be_finite(tmp_path: Path) -> None:
 def test_lasers_that_share_a_topic_are_chosen_by_frame(tmp_path: Path) -> None:
     bag = Bag().tf(10.0, "base", "laser").tf(10.0, "base", "rear", (-0.3, 0, 0))
     path = odometry(bag).scan(11.2, frame="rear").ros1(tmp_path / "a.bag")
-    with pytest.raises(InputError, match=r"in several frames: laser, rear; only one laser can be used.*--scan-frame"):
-        open_recording(path)
+    both = open_recording(path)
+    assert [(scan.time, scan.mount) for scan in both.scans()][-1] == (11.2, (-0.3, 0.0, 0.0))
+    assert [scan.mount for scan in both.scans()][:-1] == [None, None]
+    assert any("scans in 2 frames: laser, rear; all lasers are used" in note for note in both.notes)
+    with pytest.raises(InputError, match=r"in several frames: laser, rear; mount \(--mount\).*--scan-frame"):
+        open_recording(path, mount=(0.1, 0.0, 0.0))
     recording = open_recording(path, scan_frame="/rear")
     np.testing.assert_allclose(recording.sensor_on_base, (-0.3, 0, 0))
     assert [scan.time for scan in recording.scans()] == [11.2]

@@ -40,7 +40,11 @@ def test_a_carmen_log_may_have_any_name(tmp_path: Path) -> None:
     ("content", "file", "message"),
     [
         (b"", "a.clf", "is empty"),
-        (b"\x7fELF\0\0\0", "a.out", r"unknown kind; accepted is a CARMEN log \(plain, .gz or .bz2\), a ROS 1 bag"),
+        (
+            b"\x7fELF\0\0\0",
+            "a.out",
+            r"unknown kind; accepted is a CARMEN log \(plain, .gz, .bz2 or .zst\), a ROS 1 bag",
+        ),
         (b"hello world\n", "a.txt", "no laser scans.*found 1 hello. Is it a CARMEN log"),
         (b"no bag", "a.bag", "does not begin as a .bag file does"),
         (b"no bag", "a.mcap", "does not begin as a .mcap file does"),

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from backports import zstd
 
 from helpers.recording_files import flaser
 from oort.errors import InputError
@@ -90,7 +91,7 @@ def test_max_range_only_lowers_the_limit(tmp_path: Path) -> None:
     assert next(open_recording(path, max_range=100.0).scans()).range_max == 80.0
 
 
-@pytest.mark.parametrize(("suffix", "pack"), [(".gz", gzip.compress), (".bz2", bz2.compress)])
+@pytest.mark.parametrize(("suffix", "pack"), [(".gz", gzip.compress), (".bz2", bz2.compress), (".zst", zstd.compress)])
 def test_compressed_logs(tmp_path: Path, suffix: str, pack: Callable[[bytes], bytes]) -> None:
     path = tmp_path / f"home.clf{suffix}"
     path.write_bytes(pack(TEXT.encode()))
@@ -98,7 +99,7 @@ def test_compressed_logs(tmp_path: Path, suffix: str, pack: Callable[[bytes], by
     assert (recording.name, recording.num_scans) == ("home", 2)
 
 
-@pytest.mark.parametrize(("suffix", "pack"), [(".gz", gzip.compress), (".bz2", bz2.compress)])
+@pytest.mark.parametrize(("suffix", "pack"), [(".gz", gzip.compress), (".bz2", bz2.compress), (".zst", zstd.compress)])
 def test_truncated_compressed_logs_are_refused(tmp_path: Path, suffix: str, pack: Callable[[bytes], bytes]) -> None:
     packed = pack(TEXT.encode())
     path = tmp_path / f"home.clf{suffix}"

@@ -72,6 +72,7 @@ class IncrementalGraphBuilder {
 
   /// A motion of the base by odometry, with what it is always wrong by taken out.
   Pose2 corrected(const Pose2& T_before_after) const { return odometry_model_.corrected(T_before_after); }
+  const LearnedOdometry& odometry() const { return odometry_model_; }
   bool learns_odometry() const { return motion_model_ && parameters_.odometry_noise.least_learned < 1.0; }
 
   /// Covariance of a motion by odometry alone, along the axes of the frame before. What has been learned of odometry

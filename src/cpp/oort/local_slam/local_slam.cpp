@@ -22,25 +22,25 @@ void check_odometry(const LaserScan& scan, const Pose2& T_odom_base) {
 }  // namespace
 
 LocalSlam::LocalSlam(const Parameters& parameters)
-    : parameters_(parameters), laser_(parameters, {}), trajectory_(parameters) {}
+    : parameters_(parameters), lasers_(parameters, {}), trajectory_(parameters) {}
 
 void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
   if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
   if (last_) throw StateError("the sensor's place on the base cannot change while scans are being mapped");
-  laser_ = Laser(parameters_, T_base_sensor);
+  lasers_ = LaserRig(parameters_, T_base_sensor);
 }
 
 void LocalSlam::begin_map() {
   monitor_.forget();
   trajectory_.begin_map();
-  laser_ = Laser(parameters_, T_base_sensor());
+  lasers_.forget();
   last_.reset();
 }
 
 void LocalSlam::begin_session(const SessionStart& start, std::uint64_t node_count) {
   monitor_.forget();
   trajectory_.begin_session(start, node_count);
-  laser_ = Laser(parameters_, T_base_sensor());
+  lasers_.forget();
   last_.reset();
 }
 
@@ -53,7 +53,8 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
   check_odometry(scan, T_odom_base);
   LocalScan now;
   // Odometry's own scales are off by little over the length of a scan: the motion is taken as measured.
-  now.cloud = laser_.take(scan, T_odom_base, sweep_of_base);
+  now.cloud = lasers_.take(scan, T_odom_base, sweep_of_base);
+  now.view_grew = lasers_.view_grew();
   now.T_odom_base_measured = T_odom_base;
   const MotionHypotheses hypotheses = expect(now);
   ++counts_.scans;
@@ -76,6 +77,13 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
   if (due) result.node = trajectory_.add_node(now);
   last_ = std::move(now);
   return result;
+}
+
+void LocalSlam::remember(const Pose2& T_base_sensor, const LaserScan& scan, const Pose2& T_odom_base,
+                         const Sweep& sweep_of_base) {
+  check_odometry(scan, T_odom_base);
+  if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
+  lasers_.remember(T_base_sensor, scan, T_odom_base, sweep_of_base);
 }
 
 std::optional<TrajectoryNode> LocalSlam::make_node() {

@@ -10,7 +10,7 @@
 #include "oort/local_slam/trajectory_builder.hpp"
 #include "oort/odometry/odometry_monitor.hpp"
 #include "oort/parameters/parameters.hpp"
-#include "oort/sensor/laser.hpp"
+#include "oort/sensor/laser_rig.hpp"
 
 namespace oort {
 
@@ -38,7 +38,7 @@ class LocalSlam {
 
   /// Throws StateError once scans are being mapped, InputError if the pose is not finite.
   void mount_sensor(const Pose2& T_base_sensor);
-  const Pose2& T_base_sensor() const { return laser_.T_base_sensor(); }
+  const Pose2& T_base_sensor() const { return lasers_.T_base_main(); }
 
   void begin_map();
   void begin_session(const SessionStart& start, std::uint64_t node_count);
@@ -46,6 +46,10 @@ class LocalSlam {
 
   /// Throws InputError if the scan's limits, the pose or the motion are not finite; nothing changes then.
   Result add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base);
+
+  /// Takes a scan of another laser, which joins the next one of the main laser. Throws as add_scan().
+  void remember(const Pose2& T_base_sensor, const LaserScan& scan, const Pose2& T_odom_base,
+                const Sweep& sweep_of_base);
 
   /// Makes the latest scan a node if it is none and has returns enough.
   std::optional<TrajectoryNode> make_node();
@@ -61,8 +65,9 @@ class LocalSlam {
   std::uint64_t newest_node() const { return trajectory_.newest_node(); }
   Pose2 T_newest_sensor() const { return trajectory_.from_newest(last_->tracked.T_local_sensor); }
 
-  const Laser& laser() const { return laser_; }
+  const LaserRig& lasers() const { return lasers_; }
   const LocalCounts& counts() const { return counts_; }
+  const LearnedOdometry& odometry() const { return trajectory_.matcher().odometry(); }
   const OdometryMonitor& odometry_monitor() const { return monitor_; }
   const TrajectoryCounts& trajectory_counts() const { return trajectory_.counts(); }
 
@@ -73,7 +78,7 @@ class LocalSlam {
   bool has_moved_unnoticed(const LocalScan& scan) const;
 
   Parameters parameters_;
-  Laser laser_;
+  LaserRig lasers_;
   OdometryMonitor monitor_;
   TrajectoryBuilder trajectory_;
   std::optional<LocalScan> last_;

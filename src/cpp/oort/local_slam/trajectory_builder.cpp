@@ -70,6 +70,8 @@ void TrajectoryBuilder::track(LocalScan& scan, const MotionHypotheses& hypothese
   scan.missed = !is_first && !matcher_.is_placed(scan.tracked);
   if (is_doubted) settle_odometry(scan, hypotheses, T_odom_base_before, T_base_sensor);
   if (scan.tracked.restarted) local_map_ = LocalMap::kFresh;
+  // What another laser sees is not on the local map: it begins anew here, in the same frame.
+  if (scan.view_grew && !is_first && scan.tracked.usable()) begin_local_map(scan, scan.tracked.T_local_sensor);
   restart_if_poor(scan);
   T_odom_sensor_tracked_ = scan.T_odom_sensor;
   T_local_sensor_tracked_ = scan.tracked.T_local_sensor;

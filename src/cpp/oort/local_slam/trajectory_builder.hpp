@@ -25,6 +25,7 @@ struct LocalScan {
   bool was_tracked = false;
   bool missed = false;  ///< nothing that it shows says where it is
   bool is_node = false;
+  bool view_grew = false;          ///< another laser's scan joined it for the first time
   bool odometry_is_wrong = false;  ///< where it was doubted: a match that sees all directions says otherwise
 };
 

@@ -50,7 +50,7 @@ Localizer::Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& 
       parameters_(parameters.localization.tracking),
       kept_parameters_(parameters.localization.relocalizer),
       min_points_(parameters.min_pointcloud_size),
-      laser_(parameters, T_base_sensor),
+      lasers_(parameters, T_base_sensor),
       T_base_sensor_(T_base_sensor),
       odometry_model_(model_of(parameters.incremental_graph_builder.odometry_noise)),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
@@ -85,7 +85,7 @@ void Localizer::start_searching() {
 
 LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
   check_reach(T_odom_base, "localisation: the odometry pose", "check the transform odom -> base");
-  PlacedScan now{laser_.take(scan, T_odom_base, sweep_of_base), T_odom_base * T_base_sensor_};
+  PlacedScan now{lasers_.take(scan, T_odom_base, sweep_of_base), T_odom_base * T_base_sensor_};
   ++statistics_.scans;
   predict(now.T_odom_sensor);
   const bool sees = count_returns(now.cloud) >= static_cast<std::size_t>(min_points_);

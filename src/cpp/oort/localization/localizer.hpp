@@ -15,7 +15,7 @@
 #include "oort/localization/view_memory.hpp"
 #include "oort/matching/rejection.hpp"
 #include "oort/odometry/odometry_model.hpp"
-#include "oort/sensor/laser.hpp"
+#include "oort/sensor/laser_rig.hpp"
 
 namespace oort {
 
@@ -56,6 +56,12 @@ class Localizer {
   /// not finite, or the pose is more than 100 km off; nothing changes then.
   LocalizationState add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base = {});
 
+  /// Takes a scan of another laser, as Mapper::add_scan_of_other().
+  void add_scan_of_other(const Pose2& T_base_sensor, const LaserScan& scan, const Pose2& T_odom_base,
+                         const Sweep& sweep_of_base = {}) {
+    lasers_.remember(T_base_sensor, scan, T_odom_base, sweep_of_base);
+  }
+
   LocalizationState state() const { return state_; }
   /// The sensor's pose at the latest scan; none while searching.
   std::optional<Pose2> T_map_sensor() const;
@@ -89,7 +95,7 @@ class Localizer {
   TrackingParameters parameters_;
   RelocalizerParameters kept_parameters_;
   int min_points_;
-  Laser laser_;
+  LaserRig lasers_;
   Pose2 T_base_sensor_;
   OdometryModel odometry_model_;
   frsm::Matcher matcher_;

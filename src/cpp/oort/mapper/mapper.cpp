@@ -111,11 +111,11 @@ void Mapper::finish() {
 
 /// Takes the robot's own body out of the clouds of this session from before it was known. Whether there was any.
 bool Mapper::remove_body() {
-  if (!local_.laser().knows_body()) return false;
+  if (!local_.lasers().main().knows_body()) return false;
   bool cleaned = false;
   for (std::uint64_t k = session_begin_; k < map_.node_count(); ++k) {
     PointCloud cloud = map().clouds[k];
-    if (!local_.laser().remove_body_from(cloud)) continue;
+    if (!local_.lasers().main().remove_body_from(cloud)) continue;
     map_.edit().clouds.set(k, cloud);
     lane_->slam().replace_cloud(k, map().clouds.shared(k));
     cleaned = true;
@@ -166,8 +166,15 @@ std::optional<Pose2> Mapper::locate(const std::string& name_space, const std::st
 
 MapperStatistics Mapper::statistics() const {
   const OdometryMonitor& odometry = local_.odometry_monitor();
-  return {local_.counts(),        local_.trajectory_counts(), tracking_counts_,         global_counts_,
-          odometry.fault_count(), odometry.faults(),          local_.laser().findings()};
+  return {local_.counts(),
+          local_.trajectory_counts(),
+          tracking_counts_,
+          global_counts_,
+          odometry.fault_count(),
+          odometry.faults(),
+          local_.odometry().way_scale(),
+          local_.odometry().turn_scale(),
+          local_.lasers().findings()};
 }
 
 WorkSeconds Mapper::work_seconds() const {

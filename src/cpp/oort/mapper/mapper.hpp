@@ -56,6 +56,13 @@ class Mapper {
   /// finite; nothing changes then.
   ScanResult add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base = {});
 
+  /// Takes a scan of another laser than the one whose place the mapper was told, known by its own place. What it saw
+  /// joins the next scan, if that comes within a quarter of a second. Throws as add_scan().
+  void add_scan_of_other(const Pose2& T_base_sensor, const LaserScan& scan, const Pose2& T_odom_base,
+                         const Sweep& sweep_of_base = {}) {
+    local_.remember(T_base_sensor, scan, T_odom_base, sweep_of_base);
+  }
+
   /// Says that the robot stands at the dock now: makes a node of the last scan and links it to the dock's node.
   /// Returns whether a closure was found. Throws StateError if there is no scan yet.
   bool notify_docked();

@@ -34,7 +34,9 @@ struct MapperStatistics {
   GlobalCounts global;
   std::uint64_t odometry_fault_count = 0;
   std::vector<OdometryFault> odometry_faults;  ///< the first 1000
-  LaserFindings laser;
+  double odometry_way_scale = 1.0;             ///< how far the base really drives where odometry says 1, by the matches
+  double odometry_turn_scale = 1.0;            ///< and turns
+  std::vector<LaserFindings> lasers;           ///< the main one first
 };
 
 }  // namespace oort

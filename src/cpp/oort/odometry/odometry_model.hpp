@@ -41,6 +41,10 @@ class LearnedOdometry {
 
   const OdometryModel& model() const { return model_; }
 
+  /// How far the base really drives and turns, by the matches, where odometry says 1.
+  double way_scale() const { return way_scale_; }
+  double turn_scale() const { return turn_scale_; }
+
   /// The factors, as standard deviations.
   double translation_factor() const { return std::sqrt(translation_); }
   double rotation_factor() const { return std::sqrt(rotation_); }

@@ -29,6 +29,9 @@ struct SensorTuning {
   static constexpr double kClearCost = 0.8;           ///< of the best order to any other's
   static constexpr double kClearWins = 0.75;          ///< share of the tests in which it was the better of two
 
+  /// [s] between a scan of the main laser and one of another that joins it; lasers have 5 to 40 Hz.
+  static constexpr double kJoinedAge = 0.25;
+
   // The robot's own body.
   static constexpr int kBodyBins = 720;            ///< of half a degree
   static constexpr double kMaxBodyRange = 1.0;     ///< [m]; a chassis around a laser is nearer

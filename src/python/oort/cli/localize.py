@@ -9,20 +9,20 @@ from pathlib import Path
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
 from oort.cli.tool import add_checksum_argument, add_pose_argument, parse_arguments, run_tool
+from oort.image_maps import open_reference_map
 from oort.localization import STARTS, start_pose
 from oort.offline.follow import follow
 from oort.offline.localization_results import format_localization, write_localization
 from oort.offline.progress import scans_with_progress
 from oort.parameters import read_parameters
 from oort.recording import Pose
-from oort.saved_maps import open_map
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort localize", description="Follows a recorded drive on a saved map, without changing the map."
     )
-    parser.add_argument("map", help="base path of the saved map")
+    parser.add_argument("map", help="base path of the saved map, or the .yaml of one of map_server")
     parser.add_argument("input", nargs="+", help="the recording, as for oort replay")
     parser.add_argument("--start", choices=STARTS, default=STARTS[0], help="how to begin (default: global, a search)")
     add_pose_argument(parser, "--pose", "the sensor's pose for --start pose [m, rad]")
@@ -36,7 +36,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> None:
     parameters = read_parameters(args.params)
-    map_ = open_map(args.map, ignore_checksum=args.ignore_checksum)
+    map_ = open_reference_map(args.map, ignore_checksum=args.ignore_checksum)
     recording = recording_of(args, parameters)
     start: Pose | None = None
     if args.start == "pose":

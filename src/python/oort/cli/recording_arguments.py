@@ -12,7 +12,12 @@ from oort.recording.types import Recording
 
 def add_recording_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of open_recording(); the recording itself is to be an argument called ``input``."""
-    parser.add_argument("--scan-topic", metavar="TOPIC", help="which LaserScan topic of a bag")
+    parser.add_argument(
+        "--scan-topic",
+        metavar="TOPIC",
+        action="append",
+        help="which LaserScan topic of a bag; once for each of several lasers",
+    )
     parser.add_argument("--odom-frame", metavar="FRAME", help="a bag's odometry frame, where it is not called odom")
     parser.add_argument(
         "--imu-topic", metavar="TOPIC", help="a bag's IMU: its gyro takes the place of odometry's turns"

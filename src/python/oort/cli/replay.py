@@ -9,7 +9,7 @@ from pathlib import Path
 
 from oort._core import Parameters, normalise_map_path
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import add_checksum_argument, add_pose_argument, parse_arguments, run_tool
+from oort.cli.tool import UNCERTAIN, add_checksum_argument, add_pose_argument, parse_arguments, run_tool
 from oort.errors import InputError, OortError
 from oort.events import read_events
 from oort.localization import find_start
@@ -17,7 +17,7 @@ from oort.offline.replay import ReplayOptions, replay
 from oort.offline.results import write_results
 from oort.parameters import read_parameters
 from oort.recording import Recording
-from oort.report.replay_report import format_table
+from oort.report.replay_report import format_table, format_troubles
 from oort.saved_maps import open_map
 
 
@@ -27,11 +27,12 @@ def replay_to_folder(
     options: ReplayOptions,
     out: str | None = None,
     base: str | None = None,
-) -> None:
+) -> Sequence[str]:
     """Replays a recording, writes what came of it into the folder ``out`` and the map to the path ``base``.
 
-    They default to oort-out/<name of the recording> and ``out``/map. Unless quiet, the report is printed. Raises
-    OortError, also where the map to go on with would be overwritten.
+    They default to oort-out/<name of the recording> and ``out``/map. Unless quiet, the report is printed. Returns the
+    codes of what is wrong with the recording or the setup. Raises OortError, also where the map to go on with would be
+    overwritten.
     """
     folder = Path(out) if out else Path("oort-out") / recording.name
     map_path = base or str(folder.absolute() / "map")
@@ -53,6 +54,8 @@ def replay_to_folder(
         for note in results.report["notes"][len(recording.notes) :]:
             print(f"note: {note}", file=sys.stderr)
         print(format_table(results.report))
+        if troubles := format_troubles(results.report):
+            print(troubles)
         print(f"wrote {folder}: {' '.join(name for name in results.written if name != f'the map {map_path}')}")
     if f"the map {map_path}" in results.written and not options.quiet:
         print(f"map: {map_path}")
@@ -60,6 +63,7 @@ def replay_to_folder(
         print(f"open {folder / 'report.html'}")
     if results.failed:
         raise OortError(f"{'; '.join(results.failed)}. Written all the same: {', '.join(results.written) or 'nothing'}")
+    return [trouble["code"] for trouble in results.report["troubles"]]
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -80,11 +84,14 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--closures", action="store_true", help="also write closures.csv and .png: each attempt to close a loop"
     )
+    parser.add_argument(
+        "--strict", action="store_true", help=f"exit with {UNCERTAIN} if where the robot was is mostly uncertain"
+    )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser
 
 
-def _run(args: argparse.Namespace) -> None:
+def _run(args: argparse.Namespace) -> int:
     parameters = read_parameters(args.params)
     events = read_events(args.events) if args.events else []
     recording = recording_of(args, parameters)
@@ -103,7 +110,8 @@ def _run(args: argparse.Namespace) -> None:
         quiet=args.quiet,
         keep_attempts=args.closures,
     )
-    replay_to_folder(recording, parameters, options, args.out, args.map)
+    troubles = replay_to_folder(recording, parameters, options, args.out, args.map)
+    return UNCERTAIN if args.strict and "uncertain" in troubles else 0
 
 
 def main(argv: Sequence[str] | None = None) -> int:

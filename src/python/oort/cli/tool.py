@@ -12,17 +12,22 @@ from collections.abc import Callable, Sequence
 from oort.errors import OortError
 from oort.export.files import decimal
 
+UNCERTAIN = 3
+"""The exit status of ``--strict`` where most of a drive is uncertain."""
+
 _PLAIN = re.compile(r"-\d+|-\d*\.\d+")
 """The negative numbers that argparse does not take for options."""
 
 
-def run_tool(name: str, run: Callable[[], None], reading: str = "") -> int:
-    """Runs a tool; the exit status is 0, or 2 for an error and 130 for Ctrl-C, told without a traceback.
+def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int:
+    """Runs a tool; the exit status is what it returns, 0 for None, or 2 for an error and 130 for Ctrl-C.
+
+    None of them is told with a traceback.
 
     ``reading`` is the file that an error of the operating system is about if it names none.
     """
     try:
-        run()
+        return run() or 0
     except OortError as error:
         print(f"{name}: {error}", file=sys.stderr)
         return 2
@@ -32,7 +37,6 @@ def run_tool(name: str, run: Callable[[], None], reading: str = "") -> int:
     except KeyboardInterrupt:
         print(f"{name}: interrupted", file=sys.stderr)
         return 128 + signal.SIGINT
-    return 0
 
 
 def add_pose_argument(parser: argparse.ArgumentParser, name: str, meaning: str) -> None:

@@ -10,6 +10,7 @@ from concurrent.futures import Future, wait
 from typing import Any, TypeVar
 
 from oort._core import Map, Parameters, Saved, ScanResult
+from oort.diagnosis import Trouble
 from oort.errors import StateError
 from oort.events import SCAN, EventLog, scan_entry
 from oort.live.figures import Figures
@@ -32,6 +33,7 @@ _CHANGE_MAP = (_LOAD, _CLEAR, _DOCKED, _STOP)
 _SHOW_MAP = (_LOAD, _RESUME, _STOP, _REDRAW)
 
 _BACKWARDS = 1.0  # [s]; a scan that is older than the last one by more says that the clock was set back
+_LOOK_EVERY = 100  # scans, between looks for what is wrong with the setup
 _IDLE = 0.2  # [s] between looks at the clock when nothing comes
 _CLOSING = 5.0  # [s] for what is ready in the queue when the session is closed
 
@@ -65,6 +67,10 @@ class LiveSession:
         self.gallery = Gallery(parameters, self._listener, self.inbox.wake, naming)
         self.keeper = Keeper(self._listener, clock, naming)
         self.places = Places(self.inbox, self.figures, self._listener, lambda: self._snapshot, localiser, naming)
+
+        self.troubles: Sequence[Trouble] = ()
+        """what mapping shows to be wrong with the robot's setup; replaced now and then, never changed"""
+        self._observed = 0
 
         self._clock = clock
         self._event_log = event_log
@@ -171,9 +177,22 @@ class LiveSession:
         except Exception as error:  # the mapping goes on
             self._leave_out(UNUSABLE, str(error) or repr(error))
             return
+        if item.scan.mount is not None:  # it joins the main laser's next
+            return
         self.figures.mapped(result, time.monotonic() - started)
         self._listener.scan_taken(self._snapshot)
+        self._look_for_troubles(item.scan)
         self.figures.delays.add(1e3 * (time.monotonic() - item.arrived))
+
+    def _look_for_troubles(self, scan: Scan) -> None:
+        self._session.observe(scan)
+        self._observed += 1
+        if self._observed % _LOOK_EVERY == 0:
+            known = {trouble.code for trouble in self.troubles}
+            self.troubles = tuple(self._session.troubles())
+            for trouble in self.troubles:
+                if trouble.code not in known:
+                    self._listener.trouble(str(trouble))
 
     def _leave_out(self, reason: str, why: str) -> None:
         told = self.figures.drops.add(reason, why)
@@ -245,6 +264,7 @@ class LiveSession:
         if name in (_LOAD, _CLEAR):
             self.keeper.forget()
             self.figures.forget()
+            self.troubles = ()
             self.gallery.forget(self._snapshot.revision)
         if name in (_START, _RESUME):
             self.keeper.hurry()

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How mapping goes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from oort.live import LiveSession
@@ -29,6 +29,8 @@ class MappingHealth(Health):
     seconds_since_save: float | None
     save_error: str
     """why the last save failed; empty if it did not"""
+    troubles: Sequence[str]
+    """what is wrong with the robot's setup, and what to do"""
     clock_jumps: int
     """how often the scans' clock was set back"""
 
@@ -55,6 +57,8 @@ class MappingHealth(Health):
         yield from self.problems_of_input()
         if self.tracking == "lost":
             yield WARN, "Tracking is lost, mapping goes on by odometry alone; drive slowly to a place with more in view"
+        for trouble in self.troubles:
+            yield WARN, trouble[0].upper() + trouble[1:]
         yield from self.problems_of_queue()
 
     def figures(self) -> Iterator[tuple[str, str]]:
@@ -103,5 +107,6 @@ def look_over(live: LiveSession, scan_topic: str, waiting_for: str, imu_trouble:
         seconds_waiting=seconds_waiting,
         waiting_for=waiting_for,
         imu_trouble=imu_trouble,
+        troubles=[str(trouble) for trouble in live.troubles],
         clock_jumps=figures.clock_jumps,
     )

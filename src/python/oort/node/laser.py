@@ -19,7 +19,7 @@ from oort.recording.motion import SNAPSHOT, beam_span
 
 
 class Laser:
-    """Takes the scans of the laser whose scan can be used first, and refuses those of others."""
+    """Takes the scans of all lasers; the one whose scan can be used first is the main one, whose scans others join."""
 
     def __init__(
         self,
@@ -38,7 +38,7 @@ class Laser:
         self._limits = limits
         self._say_frame, self._say_increment = once(), Seldom()
         self.frame = ""
-        """its frame, once it is known"""
+        """the main one's frame, once it is known"""
 
     def resolve_later(self, message: LaserScan, sensor_frame: str, arrived: float) -> tuple[Resolve, Resolve]:
         """What makes a scan of a message that arrived at a monotonic time [s], when it is its turn.
@@ -51,8 +51,6 @@ class Laser:
         def resolve(last_resort: bool = False) -> Scan | None:
             if not message.ranges:
                 raise UnusableScanError("without readings")
-            if self.frame and sensor_frame != self.frame:
-                raise UnusableScanError("in another laser's frame")
             mount = self._transforms.mount(sensor_frame)
             placement = None if mount is None else self._transforms.place(stamp, arrived, span, last_resort)
             if mount is None or placement is None:
@@ -60,7 +58,8 @@ class Laser:
             if not self.frame:
                 self._found(sensor_frame, mount.sensor_on_base)
                 self.frame = sensor_frame
-            return to_scan(message, placement, mount.upside_down, self._limits)
+            other = mount.sensor_on_base if sensor_frame != self.frame else None
+            return to_scan(message, placement, mount.upside_down, self._limits, other)
 
         return resolve, partial(resolve, last_resort=True)
 

@@ -17,6 +17,7 @@ from std_msgs.msg import String
 
 from oort._core import Map, Parameters, normalise_map_path, render_map
 from oort.errors import InputError, StateError
+from oort.image_maps import open_reference_map
 from oort.live.figures import Figures
 from oort.live.inbox import UNUSABLE, Answer, CallItem, Inbox, ScanItem
 from oort.live.snapshot import odom_pose_of
@@ -33,7 +34,6 @@ from oort.node.transforms import Transforms, frame
 from oort.poses import between, compose
 from oort.recording import Pose, Scan
 from oort.recording.limits import NO_LIMITS, ScanLimits
-from oort.saved_maps import open_map
 
 _TF_PERIOD = 0.05  # [s]
 _HEALTH_PERIOD = 1.0  # [s]
@@ -123,7 +123,7 @@ class LocalizerNode:
     # ---- the map and the start ----
 
     def _load(self, base: str) -> None:
-        map_ = open_map(base)
+        map_ = open_reference_map(base)
         self._reference = ReferenceMap(map_, self._parameters)
         self._map: Map = map_
         self._base = normalise_map_path(base)
@@ -219,6 +219,9 @@ class LocalizerNode:
         scan, mount = item.scan, self._mount
         assert mount is not None  # what resolved the scan has set it
         localizer = self._localizer_at(mount)
+        if scan.mount is not None:
+            localizer.add_scan_of_other(scan, scan.odometry, scan.mount)
+            return
         localizer.add_scan(scan, scan.odometry)
         self._see(Sighting.of(localizer, scan.reported_frame))
         self._figures.mapped(None, time.monotonic() - started)

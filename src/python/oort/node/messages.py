@@ -90,7 +90,13 @@ def yaw(quaternion: Quaternion) -> float:
     return heading(*unit)
 
 
-def to_scan(message: LaserScan, placement: Placement, upside_down: bool, limits: ScanLimits = NO_LIMITS) -> Scan:
+def to_scan(
+    message: LaserScan,
+    placement: Placement,
+    upside_down: bool,
+    limits: ScanLimits = NO_LIMITS,
+    mount: Pose | None = None,
+) -> Scan:
     """A scan with its odometry: the very bits that reading the message from a bag would give."""
     whole_seconds, nanoseconds = stamp_parts(message.header.stamp)
     return scan_from_message(
@@ -104,4 +110,5 @@ def to_scan(message: LaserScan, placement: Placement, upside_down: bool, limits:
         placement=placement,
         upside_down=upside_down,
         limits=limits,
+        mount=mount,
     )

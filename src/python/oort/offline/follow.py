@@ -59,6 +59,9 @@ def follow(
     drive = LocalizedDrive(recording, localizer)
     times: list[float] = []
     for scan in scans:
+        if scan.mount is not None:
+            localizer.add_scan_of_other(scan, scan.odometry, scan.mount)
+            continue
         started = time.perf_counter()
         localizer.add_scan(scan, scan.odometry)
         drive.watch.scan_seconds.append(time.perf_counter() - started)

@@ -82,6 +82,10 @@ def replay(
     for scan in with_progress(_until(recording.scans(), options.until), recording, options.quiet):
         result = None
         mapped = schedule.take(scan)
+        if scan.mount is not None:  # it joins the next scan of the main laser
+            if mapped is not None:
+                session.add_scan(mapped)
+            continue
         if mapped is not None:
             started, waited = time.perf_counter(), session.mapper.work_seconds["waiting"]
             result = session.add_scan(mapped)
@@ -89,6 +93,7 @@ def replay(
             watch.scan_seconds.append(time.perf_counter() - started - waited)
             watch.waited_seconds.append(waited)
             log.add(scan.time, result, watch.scan_seconds[-1], waited)
+            session.observe(mapped)
         else:
             log.add(scan.time, None)
         recorder.add(scan.stamp, (mapped or scan).odometry, result)

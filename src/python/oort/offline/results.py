@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oort._core import Map, Mapper, OccupancyGrid, Parameters, save_map
+from oort.diagnosis import Trouble
 from oort.evaluation.attempts import judge_attempts, write_attempts
 from oort.evaluation.histograms import make_histograms, panels
 from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
@@ -47,6 +48,11 @@ class Drive:
     """whether to tell of each attempt to close a loop"""
     log: ScanLog = field(default_factory=ScanLog)
     """what became of each scan"""
+
+    @property
+    def troubles(self) -> list[Trouble]:
+        """What is wrong with the recording or the robot's setup, as far as the drive shows it."""
+        return self.session.troubles()
 
     @property
     def map(self) -> Map:
@@ -139,6 +145,7 @@ def _report(
             "switched_off": int((map_.switchable_edges["switch"] < _SWITCHED_OFF).sum()),
         },
         histograms,
+        [trouble.to_dict() for trouble in drive.troubles],
     )
     return {**report, "notes": [*report["notes"], *notes]}
 

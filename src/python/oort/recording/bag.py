@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads ROS 1 and ROS 2 bags: laser scans, with odometry from tf or nav_msgs/Odometry."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +35,7 @@ def read_bag(
     container: Container,
     *,
     name: str,
-    scan_topic: str | None,
+    scan_topics: Sequence[str],
     scan_frame: str | None,
     odom_frame: str | None,
     imu_topic: str | None,
@@ -50,18 +50,25 @@ def read_bag(
     """
     path = container.path
     with container.opened() as reader:
-        topic = _choose(path, reader, _SCAN, scan_topic, "laser scans", "scan_topic (--scan-topic)")
+        wanted: Sequence[str | None] = scan_topics or [None]
+        topics = [
+            _choose(path, reader, _SCAN, topic, "laser scans", "scan_topic (--scan-topic, once for each laser)")
+            for topic in wanted
+        ]
         imu = ""
         if imu_topic is not None or parameters.get("use_imu"):
             imu = _choose(path, reader, _IMU, imu_topic, "IMU messages", "imu_topic (--imu-topic)")
-        survey = Survey(topic, scan_frame, ScanFields(topic), compensates=bool(parameters.get("motion_compensation")))
+        fields = {topic: ScanFields(topic) for topic in topics}
+        survey = Survey(fields, scan_frame, compensates=bool(parameters.get("motion_compensation")))
         survey.gyro = GyroRecord(imu) if imu else None
         _read(reader, survey)
     try:
         rig = assemble(survey, odom_frame, mount, parameters)
-        correction, told = survey.fields.settle(limits)
+        settled = {topic: fields.settle(limits) for topic, fields in survey.fields.items() if fields.num_scans}
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+    corrections = {topic: correction for topic, (correction, _) in settled.items()}
+    told = [note for _, notes in settled.values() for note in notes]
     scans = zip(survey.scan_times, survey.scan_spans, strict=True)
     usable = [rig.place(time, span) is not None for time, span in scans]
     if not any(usable):
@@ -72,7 +79,7 @@ def read_bag(
         sensor_on_base=rig.sensor_on_base,
         num_scans=sum(usable),
         notes=(*container.notes, *rig.notes, *told, *_skip_notes(survey, usable)),
-        source=lambda: _scans(container, survey, rig, correction, limits),
+        source=lambda: _scans(container, survey, rig, corrections, limits),
     )
 
 
@@ -98,14 +105,14 @@ def _choose(path: Path, reader: AnyReader, kind: str, wanted: str | None, what: 
 
 def _read(reader: AnyReader, survey: Survey) -> None:
     """The first pass: all that says how scans and odometry go together."""
-    topics = {survey.scan_topic, survey.gyro.topic if survey.gyro is not None else survey.scan_topic}
+    topics = {*survey.fields, *([] if survey.gyro is None else [survey.gyro.topic])}
     wanted = [c for c in reader.connections if c.topic in topics or c.msgtype in (_ODOMETRY, *_TF)]
     count = 0
     for connection, _, raw in reader.messages(wanted):
         count += 1
         message: Any = reader.deserialize(raw, connection.msgtype)
-        if connection.topic == survey.scan_topic:
-            _note_scan(survey, message)
+        if connection.topic in survey.fields:
+            _note_scan(survey, connection.topic, message)
         elif survey.gyro is not None and connection.topic == survey.gyro.topic:
             survey.gyro.add(_frame(message.header.frame_id), _seconds(message.header.stamp), message)
         elif connection.msgtype == _ODOMETRY:
@@ -123,13 +130,13 @@ def _read(reader: AnyReader, survey: Survey) -> None:
         raise InputError(f"{reader.paths[0]}: holds {count} of the {expected} messages that it lists; copy it again")
 
 
-def _note_scan(survey: Survey, message: Any) -> None:
+def _note_scan(survey: Survey, topic: str, message: Any) -> None:
     frame = _frame(message.header.frame_id)
     survey.scan_frames[frame] = None
     if not survey.is_wanted(frame):
         survey.other_scans += 1
     elif len(message.ranges):
-        survey.fields.add(message)
+        survey.fields[topic].add(message)
         survey.scan_times.append(_seconds(message.header.stamp))
         span = beam_span(len(message.ranges), message.time_increment) if survey.compensates else SNAPSHOT
         survey.scan_spans.append(span or SNAPSHOT)
@@ -178,22 +185,24 @@ def _skip_notes(survey: Survey, usable: list[bool]) -> list[str]:
 
 
 def _scans(
-    container: Container, survey: Survey, rig: Rig, correction: Correction, limits: ScanLimits
+    container: Container, survey: Survey, rig: Rig, corrections: Mapping[str, Correction], limits: ScanLimits
 ) -> Iterator[Scan]:
     """The second pass: the usable scans in the order of the recording."""
     spans = iter(survey.scan_spans)
     with container.opened() as reader:
-        wanted = [connection for connection in reader.connections if connection.topic == survey.scan_topic]
+        wanted = [connection for connection in reader.connections if connection.topic in survey.fields]
         for connection, _, raw in reader.messages(wanted):
             message: Any = reader.deserialize(raw, connection.msgtype)
-            if not len(message.ranges) or not survey.is_wanted(_frame(message.header.frame_id)):
+            frame = _frame(message.header.frame_id)
+            if not len(message.ranges) or not survey.is_wanted(frame):
                 continue
             placement = rig.place(_seconds(message.header.stamp), next(spans))
             if placement is not None:
-                yield _to_scan(message, placement, rig.upside_down, correction, limits)
+                yield _to_scan(message, placement, rig, corrections[connection.topic], limits)
 
 
-def _to_scan(message: Any, placement: Placement, upside_down: bool, correction: Correction, limits: ScanLimits) -> Scan:
+def _to_scan(message: Any, placement: Placement, rig: Rig, correction: Correction, limits: ScanLimits) -> Scan:
+    mount, upside_down = rig.lasers[_frame(message.header.frame_id)]
     return scan_from_message(
         whole_seconds=message.header.stamp.sec,
         nanoseconds=message.header.stamp.nanosec,
@@ -205,4 +214,5 @@ def _to_scan(message: Any, placement: Placement, upside_down: bool, correction: 
         placement=placement,
         upside_down=upside_down,
         limits=limits,
+        mount=None if mount == rig.sensor_on_base else mount,
     )

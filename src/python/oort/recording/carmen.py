@@ -2,15 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads CARMEN logs: text, one message a line, each ending in `ipc_timestamp hostname logger_timestamp`."""
 
-import bz2
-import gzip
 import math
-import zlib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +15,7 @@ from numpy.typing import NDArray
 from oort.errors import InputError
 from oort.poses import between
 from oort.recording.limits import ScanLimits
+from oort.recording.packed import DAMAGED, PACKED
 from oort.recording.scan_fields import find_no_return
 from oort.recording.types import Pose, Recording, Scan
 
@@ -106,16 +104,17 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
                 yield number, line.decode("ascii", errors="replace")
     except EOFError:
         raise InputError(f"{path} is cut short: its compressed data end after line {number}; copy it again") from None
-    except (OSError, zlib.error) as error:
+    except DAMAGED as error:
         raise InputError(f"{path} cannot be read beyond line {number} ({error}); copy it again") from None
 
 
-def _open(path: Path) -> BinaryIO | gzip.GzipFile | bz2.BZ2File:
+def _open(path: Path) -> Any:
     with path.open("rb") as stream:
-        magic = stream.read(3)
-    if magic.startswith(b"\x1f\x8b"):
-        return gzip.open(path)
-    return bz2.open(path) if magic == b"BZh" else path.open("rb")
+        head = stream.read(4)
+    for magic, open_packed in PACKED.items():
+        if head.startswith(magic):
+            return open_packed(path)
+    return path.open("rb")
 
 
 def _parse_flaser(fields: list[str]) -> _Reading:

@@ -2,15 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files that a bag is kept in: one or several, a folder, packed, cut or whole; all are opened the same way."""
 
-import bz2
-import gzip
 import re
 import shutil
-import zlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag1 import Reader as Reader1
@@ -19,6 +17,7 @@ from rosbags.rosbag2.storage_mcap import McapReader
 from rosbags.typesys import Stores, get_typestore
 
 from oort.errors import InputError, OortError
+from oort.recording.packed import DAMAGED, PACKED
 from oort.recording.salvage import CutMcap, ScanningMcap, ScanningReader, TemporaryCopy, salvage_database
 
 BAG_MAGIC = {  # first bytes -> the suffix that the bag library knows this kind by, and its name
@@ -31,7 +30,6 @@ _ADVICE = {
     ".mcap": "'mcap recover' may repair it",
     ".db3": "the sqlite3 tool's '.recover' may repair it",
 }
-_PACKED: dict[bytes, Callable[..., gzip.GzipFile | bz2.BZ2File]] = {b"\x1f\x8b": gzip.open, b"BZh": bz2.open}
 
 
 @dataclass(frozen=True)
@@ -98,7 +96,7 @@ def _one(path: Path) -> Container | None:
         return _folder(path)
     with path.open("rb") as stream:
         head = stream.read(16)
-    for magic, open_packed in _PACKED.items():
+    for magic, open_packed in PACKED.items():
         if head.startswith(magic):
             return _packed(path, open_packed)
     for magic, (suffix, kind) in BAG_MAGIC.items():
@@ -110,7 +108,7 @@ def _one(path: Path) -> Container | None:
     return None
 
 
-def _packed(path: Path, open_packed: Callable[..., gzip.GzipFile | bz2.BZ2File]) -> Container | None:
+def _packed(path: Path, open_packed: Callable[..., Any]) -> Container | None:
     """What is packed, unpacked into a file that lasts as long as the container; None for what is no bag."""
     cut = ""
     try:
@@ -125,9 +123,9 @@ def _packed(path: Path, open_packed: Callable[..., gzip.GzipFile | bz2.BZ2File])
                 target.write(head)
                 try:
                     shutil.copyfileobj(stream, target)
-                except (EOFError, zlib.error, OSError) as error:
+                except DAMAGED as error:
                     cut = f"{path.name} cannot be unpacked to its end ({error})"
-    except (EOFError, zlib.error, OSError):
+    except DAMAGED:
         return None
     part, note = _file(copy.path, path)
     notes = (f"{path.name} was unpacked to be read", cut, note)

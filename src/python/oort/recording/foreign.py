@@ -9,7 +9,6 @@ _ARCHIVES = {
     b"PK\x03\x04": "a zip archive: unpack it",
     b"7z\xbc\xaf\x27\x1c": "a 7z archive: unpack it",
     b"\xfd7zXZ\0": "compressed with xz: unpack it with 'unxz'",
-    b"\x28\xb5\x2f\xfd": "compressed with zstd: unpack it with 'zstd -d'",
 }
 
 

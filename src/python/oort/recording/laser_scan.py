@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from oort.recording.limits import NO_LIMITS, ScanLimits
 from oort.recording.motion import Placement
-from oort.recording.types import Scan
+from oort.recording.types import Pose, Scan
 
 
 def seconds(whole: int, nanoseconds: int) -> float:
@@ -29,8 +29,9 @@ def scan_from_message(
     placement: Placement,
     upside_down: bool,
     limits: ScanLimits = NO_LIMITS,
+    mount: Pose | None = None,
 ) -> Scan:
-    """A Scan of what a LaserScan says in its own frame; `placement` is its odometry.
+    """A Scan of what a LaserScan says in its own frame; `placement` is its odometry, `mount` as of Scan.
 
     `upside_down` is for a laser whose z axis points down: its beams are put in the order in which they turn
     counter-clockwise on the base.
@@ -53,6 +54,7 @@ def scan_from_message(
         ranges=values,
         odometry=placement.odometry,
         sweep=sweep,
+        mount=mount,
         reported_frame=placement.reported_frame,
         guessed=placement.guessed,
     )

@@ -15,23 +15,23 @@ from oort.recording.carmen import read_carmen
 from oort.recording.container import BAG_MAGIC, find_container
 from oort.recording.foreign import name_foreign
 from oort.recording.limits import ScanLimits
+from oort.recording.packed import PACKED
+from oort.recording.packed import SUFFIXES as PACKED_SUFFIXES
 from oort.recording.types import Pose, Recording
 
 ACCEPTED = (
-    "a CARMEN log (plain, .gz or .bz2), a ROS 1 bag (.bag), a ROS 2 bag (the directory with metadata.yaml, or its "
-    ".mcap or .db3 file); bags may be packed (.gz, .bz2) too"
+    "a CARMEN log (plain, .gz, .bz2 or .zst), a ROS 1 bag (.bag), a ROS 2 bag (the directory with metadata.yaml, or "
+    "its .mcap or .db3 file); bags may be packed (.gz, .bz2, .zst) too"
 )
 """What `open_recording` reads, as a phrase for messages."""
 
-_COMPRESSED = (".gz", ".bz2")
 _SUFFIXES = (".clf", ".carmen", ".log", ".txt", ".bag", ".mcap", ".db3")
-_COMPRESSED_MAGIC = (b"\x1f\x8b", b"BZh")
 
 
 def open_recording(
     path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     *,
-    scan_topic: str | None = None,
+    scan_topic: str | Sequence[str] | None = None,
     scan_frame: str | None = None,
     odom_frame: str | None = None,
     imu_topic: str | None = None,
@@ -44,6 +44,8 @@ def open_recording(
     """Opens a recording and looks through all of it once. Several paths are the parts of a bag that was split.
 
     `scan_topic` chooses among several laser scans: a bag's topic, or a CARMEN log's message (FLASER, ROBOTLASER1).
+    Several topics of a bag are those of several lasers, all of which are used, each where its frame says; so are those
+    of one topic in several frames.
     `odom_frame` names a bag's odometry frame where it is not called "odom", and `imu_topic` the IMU whose gyro takes
     the place of its turns. Of `parameters` (default: Parameters()) those count that say what is made of odometry:
     use_imu, which takes the bag's only IMU, motion_compensation and max_extrapolation. Readings at or beyond
@@ -65,14 +67,19 @@ def open_recording(
         raise ParameterError(f"mount must be x, y [m] and theta [rad] of the laser on the base, not {mount}")
     for part in paths:
         _check_readable(part)
+    topics = [scan_topic] if isinstance(scan_topic, str) else list(scan_topic or [])
     container = find_container(paths)
     if container is None:
         for option, value in (("odom_frame", odom_frame), ("scan_frame", scan_frame)):
             if value is not None:
                 raise ParameterError(f"{path} is a CARMEN log: it has no frames, so leave out {option}")
+        if len(topics) > 1:
+            raise ParameterError(f"{path} is a CARMEN log: choose one of its messages with scan_topic, not {topics}")
         if imu_topic is not None:
             raise ParameterError(f"{path} is a CARMEN log: it has no IMU, so leave out imu_topic")
-        recording = read_carmen(path, name=recording_name(path), message=scan_topic, mount=mount, limits=limits)
+        recording = read_carmen(
+            path, name=recording_name(path), message=topics[0] if topics else None, mount=mount, limits=limits
+        )
         if parameters is not None and parameters.get("use_imu"):
             note = "a CARMEN log has no IMU: use_imu has no effect, turns are those of odometry"
             recording = replace(recording, notes=(*recording.notes, note))
@@ -80,7 +87,7 @@ def open_recording(
     return read_bag(
         container,
         name=recording_name(container.path),
-        scan_topic=scan_topic,
+        scan_topics=topics,
         scan_frame=None if scan_frame is None else scan_frame.lstrip("/"),
         odom_frame=odom_frame,
         imu_topic=imu_topic,
@@ -93,7 +100,7 @@ def open_recording(
 def recording_name(path: Path) -> str:
     """The base name without the suffixes of recordings: intel.clf.bz2 -> intel."""
     name = path.resolve().name
-    for suffixes in (_COMPRESSED, _SUFFIXES):
+    for suffixes in (PACKED_SUFFIXES, _SUFFIXES):
         stem, suffix = os.path.splitext(name)
         if stem and suffix.lower() in suffixes:
             name = stem
@@ -113,7 +120,7 @@ def _check_readable(path: Path) -> None:
         raise InputError(f"{path} is empty; copy it again, or record it again")
     if foreign := name_foreign(path, head):
         raise InputError(f"{path} is {foreign}")
-    if path.name == "metadata.yaml" or head.startswith(tuple(BAG_MAGIC)) or head.startswith(_COMPRESSED_MAGIC):
+    if path.name == "metadata.yaml" or head.startswith((*BAG_MAGIC, *PACKED)):
         return
     if path.suffix.lower() in (".bag", ".mcap", ".db3"):
         raise InputError(f"{path} does not begin as a {path.suffix} file does: it is damaged or something else")

@@ -21,10 +21,10 @@ _GAP = 1.0  # [s]; a longer silence of the odometry is worth a note
 class Survey:
     """What the first pass over a bag finds."""
 
-    scan_topic: str
+    fields: dict[str, ScanFields]
+    """of each topic whose scans count"""
     scan_frame: str | None
-    """the only frame whose scans count; None for the one there is"""
-    fields: ScanFields
+    """the only frame whose scans count; None for all"""
     compensates: bool
     """whether motion within a scan counts"""
     tf: FrameTree = field(default_factory=FrameTree)
@@ -43,6 +43,11 @@ class Survey:
     gyro: GyroRecord | None = None
     """None unless it is to be used"""
 
+    @property
+    def scan_topic(self) -> str:
+        """The topics whose scans count, for messages."""
+        return " and ".join(self.fields)
+
     def is_wanted(self, frame: str) -> bool:
         """Whether the scans in a frame count."""
         return self.scan_frame in (None, frame)
@@ -52,12 +57,17 @@ class Survey:
 class Rig:
     """How scans and odometry go together."""
 
-    sensor_on_base: Pose
-    upside_down: bool
+    lasers: dict[str, tuple[Pose, bool]]
+    """by frame, the main one first: where each sits on the base, and whether it hangs upside down"""
     odometry: OdometryBuffer
     max_extrapolation: float
     """[s]"""
     notes: tuple[str, ...]
+
+    @property
+    def sensor_on_base(self) -> Pose:
+        """T_base_sensor of the main laser."""
+        return next(iter(self.lasers.values()))[0]
 
     def place(self, stamp: float, span: tuple[float, float]) -> Placement | None:
         """The odometry of a scan; None outside the time that it covers."""
@@ -70,7 +80,13 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
     `mount` is T_base_sensor where a person gives it, whatever transforms say. Raises InputError, without the bag's
     name, if something is missing, ambiguous or not as a planar laser needs it.
     """
-    sensor = _scan_frame(survey)
+    frames = _scan_frames(survey)
+    sensor = frames[0]
+    if mount is not None and len(frames) > 1:
+        raise InputError(
+            f"the scans on {survey.scan_topic} are in several frames: {', '.join(frames)}; mount (--mount) says where "
+            "one laser sits: choose it with scan_frame (--scan-frame)"
+        )
     notes = []
     odom, base, link, origin = _find_odometry(survey, sensor, odom_frame, anywhere=mount is not None)
     notes.append(
@@ -81,7 +97,7 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
     if survey.tf.unusable:
         notes.append(f"{survey.tf.unusable} transforms that are not finite or have no rotation were ignored")
     if mount is not None:
-        sensor_on_base, upside_down = mount, False
+        lasers = {sensor: (mount, False)}
         notes.append("the laser sits on the base where --mount says, upright, whatever transforms tell")
     else:
         if sensor == base:
@@ -91,9 +107,16 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
                 f"{origin} has no child_frame_id, so whose odometry it is, and where the laser sits there, is not "
                 "known; say where the laser sits with mount (--mount X Y THETA)"
             )
-        sensor_on_base, upside_down = to_plane(survey.tf.mount(base, sensor), sensor)
-    if upside_down:
-        notes.append("the laser hangs upside down: its beams were turned round")
+        lasers = {frame: to_plane(survey.tf.mount(base, frame), frame) for frame in frames}
+    if len(frames) > 1:
+        notes.append(
+            f"scans in {len(frames)} frames: {', '.join(frames)}; all lasers are used, each with its own mount, "
+            f"{sensor} first; --scan-frame chooses one"
+        )
+    for frame, (_, upside_down) in lasers.items():
+        if upside_down:
+            which = f"{frame} " if len(frames) > 1 else ""
+            notes.append(f"the laser {which}hangs upside down: its beams were turned round")
     if survey.impossible_spans:
         notes.append(
             f"{survey.impossible_spans} scans have a time_increment that is no number or makes them last longer than "
@@ -110,22 +133,17 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
     gap = float(np.diff(samples[:, 0]).max(initial=0.0))
     if gap > _GAP:
         notes.append(f"the odometry is silent for up to {gap:.1f} s; poses in between are interpolated")
-    return Rig(sensor_on_base, upside_down, buffer, float(parameters.get("max_extrapolation")), tuple(notes))
+    return Rig(lasers, buffer, float(parameters.get("max_extrapolation")), tuple(notes))
 
 
-def _scan_frame(survey: Survey) -> str:
-    """The frame that the scans are in. Raises InputError if there are none, or they are in several."""
+def _scan_frames(survey: Survey) -> list[str]:
+    """The frames that the scans are in, in the order of their first scans. Raises InputError if there are none."""
     if survey.scan_frame is not None and survey.scan_frame not in survey.scan_frames:
         frames = ", ".join(survey.scan_frames) or "none"
         raise InputError(f"no scan on {survey.scan_topic} is in frame {survey.scan_frame}; frames there: {frames}")
     if not survey.scan_times:
         raise InputError(f"no scan with readings on {survey.scan_topic} ({survey.empty_scans} without)")
-    if survey.scan_frame is None and len(survey.scan_frames) > 1:
-        raise InputError(
-            f"the scans on {survey.scan_topic} are in several frames: {', '.join(survey.scan_frames)}; only one laser "
-            "can be used: choose it with scan_frame (--scan-frame)"
-        )
-    return survey.scan_frame or next(iter(survey.scan_frames))
+    return [survey.scan_frame] if survey.scan_frame is not None else list(survey.scan_frames)
 
 
 def _find_odometry(survey: Survey, sensor: str, wanted: str | None, *, anywhere: bool) -> tuple[str, str, Link, str]:

@@ -68,6 +68,11 @@ class ScanFields:
                 self._sample, self._stride = self._sample[::2], 2 * self._stride
         self._scans += 1
 
+    @property
+    def num_scans(self) -> int:
+        """How many scans were taken."""
+        return self._scans
+
     def settle(self, limits: ScanLimits) -> tuple[Correction, list[str]]:
         """What to take instead, and notes. Raises InputError for fields that are of no use."""
         if self._undirected:

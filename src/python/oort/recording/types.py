@@ -78,6 +78,8 @@ class Scan(LaserScan):
     """T_odom_base at the stamp"""
     reported_frame: Pose | None = None
     """where the frame is that odometry is reported in, seen from the one of ``odometry``; None: they are the same"""
+    mount: Pose | None = None
+    """T_base_sensor of another laser than the recording's main one, whose next scan this one joins; None: the main"""
     guessed: bool = False
     """whether the odometry rests on what was known at some moment, so that a later look might tell something else"""
 
@@ -91,7 +93,7 @@ class Recording:
     kind: str
     """what kind of file it is, for people: "CARMEN log", "ROS 1 bag", "ROS 2 bag" """
     sensor_on_base: Pose
-    """T_base_sensor"""
+    """T_base_sensor, of the main laser where there are several"""
     num_scans: int
     """how many scans `scans()` delivers"""
     notes: tuple[str, ...]

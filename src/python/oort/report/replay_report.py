@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The figures of a replay: the table that people read and report.json."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from oort.recording import Recording
@@ -19,6 +19,7 @@ def make_report(
     timings: Mapping[str, Any],
     map_figures: Mapping[str, Any],
     histograms: Mapping[str, Any],
+    troubles: Sequence[Mapping[str, Any]] = (),
 ) -> dict[str, Any]:
     """Everything that report.json holds. Only ``timings`` differs between two replays of the same input."""
     return {
@@ -26,6 +27,7 @@ def make_report(
         "input": recording.name,
         "kind": recording.kind,
         "notes": list(recording.notes),
+        "troubles": list(troubles),
         "recorded_seconds": recorded_seconds,
         **statistics,
         "map": dict(map_figures),
@@ -33,6 +35,12 @@ def make_report(
         "timings": dict(timings),
         "parameters": dict(parameters),
     }
+
+
+def format_troubles(report: Mapping[str, Any]) -> str:
+    """The list of what is wrong with the recording or the setup; empty if nothing is."""
+    lines = [f"- {trouble['text']}: {trouble['advice']}" for trouble in report["troubles"]]
+    return "\n".join(["what is wrong with this recording or setup:", *lines] if lines else [])
 
 
 def format_table(report: Mapping[str, Any]) -> str:

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "bindings.hpp"
+#include "oort/sensor/scan_pair.hpp"
+
+namespace py = pybind11;
+
+namespace oort {
+namespace {
+
+using Ranges = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+PointCloud cloud_of(double time, double angle_min, double angle_increment, double range_min, double range_max,
+                    const Ranges& ranges) {
+  return to_point_cloud({time, angle_min, angle_increment, range_min, range_max,
+                         std::vector<float>(ranges.data(), ranges.data() + ranges.size())});
+}
+
+}  // namespace
+
+void bind_sensor(py::module_& m) {
+  py::class_<ReferenceScan>(m, "ReferenceScan", "A scan that others are laid on by themselves, without a map.")
+      .def(py::init([](double time, double angle_min, double angle_increment, double range_min, double range_max,
+                       const Ranges& ranges) {
+             return ReferenceScan(cloud_of(time, angle_min, angle_increment, range_min, range_max, ranges));
+           }),
+           py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"),
+           py::arg("range_max"), py::arg("ranges"))
+      .def(
+          "align",
+          [](const ReferenceScan& reference, double time, double angle_min, double angle_increment, double range_min,
+             double range_max, const Ranges& ranges, const std::vector<PoseTuple>& guesses) {
+            const PointCloud cloud = cloud_of(time, angle_min, angle_increment, range_min, range_max, ranges);
+            std::vector<PairMatch> matches;
+            matches.reserve(guesses.size());
+            for (const PoseTuple& guess : guesses) matches.push_back(reference.align(cloud, pose_of(guess)));
+            const auto best = std::min_element(matches.begin(), matches.end(),
+                                               [](const PairMatch& a, const PairMatch& b) { return a.cost < b.cost; });
+            if (best == matches.end()) throw py::value_error("align: needs a guess");
+            return py::make_tuple(tuple_of(best->T_reference_scan), best->cost, best->inlier_ratio, best->degenerate);
+          },
+          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
+          py::arg("ranges"), py::arg("guesses"),
+          "Lays a scan on this one from some guesses (T_reference_scan): the pose with the least cost, the cost (mean "
+          "squared distance [m^2]), the share of points that lie on the reference, and whether a direction is left "
+          "open.");
+}
+
+}  // namespace oort

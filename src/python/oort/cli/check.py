@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``oort check INPUT``: says what is wrong with a recording or a robot's setup, without keeping a map."""
+
+import argparse
+import json
+from collections.abc import Sequence
+
+from oort.cli.recording_arguments import add_recording_arguments, recording_of
+from oort.cli.tool import UNCERTAIN, parse_arguments, run_tool
+from oort.offline.replay import ReplayOptions, replay
+from oort.parameters import read_parameters
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort check",
+        description="Maps a recorded drive, keeps nothing, and says what is wrong with the recording or the setup.",
+    )
+    parser.add_argument("input", nargs="+", help="the recording, as for oort replay")
+    parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
+    add_recording_arguments(parser)
+    parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
+    parser.add_argument(
+        "--strict", action="store_true", help=f"exit with {UNCERTAIN} if where the robot was is mostly uncertain"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    return parser
+
+
+def _run(args: argparse.Namespace) -> int:
+    parameters = read_parameters(args.params)
+    recording = recording_of(args, parameters)
+    drive = replay(recording, parameters, ReplayOptions(until=args.until, quiet=args.json))
+    troubles = drive.troubles
+    if args.json:
+        told = {"input": recording.name, "notes": recording.notes, "troubles": [each.to_dict() for each in troubles]}
+        print(json.dumps(told, indent=2))
+    else:
+        for note in recording.notes:
+            print(f"note: {note}")
+        for trouble in troubles:
+            print(f"- {trouble}")
+        if not troubles:
+            print("nothing is wrong, as far as the drive shows")
+    return UNCERTAIN if args.strict and any(trouble.code == "uncertain" for trouble in troubles) else 0
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line tool; exit code 2 for an input or a call that cannot be used."""
+    args = parse_arguments(_parser(), argv)
+    return run_tool("oort check", lambda: _run(args), args.input[0])

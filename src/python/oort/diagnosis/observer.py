@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Watches a drive beside its mapping: how scans say that the sensor moved, and how odometry does."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from oort._core import ReferenceScan
+from oort.poses import between, compose
+from oort.recording.types import Pose, Scan
+
+_EVERY = 5  # scans between samples, at first
+_STANDING = 20  # scans between samples while odometry stands
+_SAMPLES = 250  # that are taken so often; then ten times as rarely
+_RARER = 10
+_MOVED = (0.005, 0.005)  # [m], [rad] between two scans
+_LONGEST = 0.4  # [s] between two scans: more, and a robot that turns is too far from where it was
+_POINTS = 60  # of a scan that is laid on another
+_KEPT = 40_000  # scans whose odometry is remembered, and 1/20 as many samples
+
+
+class Sample(NamedTuple):
+    """How the sensor moved from one scan to the next."""
+
+    begin: float
+    """[s], stamps of the two scans"""
+    end: float
+    odometry: Pose
+    """T_before_after by odometry"""
+    scans: Pose
+    """by the scans alone"""
+    cost: float
+    """mean squared distance that is left [m^2]"""
+    inlier_ratio: float
+    degenerate: bool
+    """whether the scans leave a direction open"""
+
+
+class Observer:
+    """Takes the scans of a drive in order. What it costs is bounded: a few hundred pairs of scans are compared."""
+
+    def __init__(self, sensor_on_base: Pose) -> None:
+        """Nothing so far; ``sensor_on_base`` is T_base_sensor."""
+        self._mount = sensor_on_base
+        self._before: Scan | None = None
+        self._since = 0
+        self._taken = 0
+        self.samples: list[Sample] = []
+        self.stamps: list[float] = []
+        """of all scans [s]"""
+        self.odometry: list[Pose] = []
+        """T_odom_base at all scans"""
+
+    def add(self, scan: Scan) -> None:
+        """Takes the next scan."""
+        before, self._before = self._before, scan
+        self.stamps.append(scan.time)
+        self.odometry.append(scan.odometry)
+        self._since += 1
+        if before is not None and self._is_due(before, scan):
+            self._since = 0
+            self._taken += 1
+            self._compare(before, scan)
+        if len(self.stamps) > _KEPT:
+            del self.stamps[: _KEPT // 2], self.odometry[: _KEPT // 2]
+            self.samples = [sample for sample in self.samples if sample.begin >= self.stamps[0]]
+
+    def _is_due(self, before: Scan, scan: Scan) -> bool:
+        if not 0.0 < scan.time - before.time <= _LONGEST:
+            return False
+        x, y, theta = between(before.odometry, scan.odometry).tolist()
+        stands = max(abs(x), abs(y)) < _MOVED[0] and abs(theta) < _MOVED[1]
+        rarer = _RARER if self._taken >= _SAMPLES else 1
+        return self._since >= (_STANDING if stands else _EVERY) * rarer
+
+    def _compare(self, before: Scan, scan: Scan) -> None:
+        moved: NDArray[np.float64] = between(compose(before.odometry, self._mount), compose(scan.odometry, self._mount))
+        x, y, theta = moved.tolist()
+        stride = max(1, len(scan.ranges) // _POINTS)
+        time, angle_min, increment, range_min, range_max, ranges = scan.readings
+        guesses = [(0.0, 0.0, 0.0), (x, y, theta), (x, y, -theta), (-x, -y, theta)]
+        pose, cost, inlier_ratio, degenerate = ReferenceScan(*before.readings).align(
+            time, angle_min, increment * stride, range_min, range_max, ranges[::stride], guesses
+        )
+        self.samples.append(Sample(before.time, scan.time, (x, y, theta), pose, cost, inlier_ratio, degenerate))
+
+
+def columns(samples: Sequence[Sample]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Motions (n, 3) by odometry and by scans, and whether a direction is open, of the samples that fit well."""
+    good = [sample for sample in samples if sample.inlier_ratio >= _FITS and sample.cost <= _MISFIT]
+    odometry = np.array([sample.odometry for sample in good], dtype=np.float64).reshape(-1, 3)
+    scans = np.array([sample.scans for sample in good], dtype=np.float64).reshape(-1, 3)
+    return odometry, scans, np.array([sample.degenerate for sample in good], dtype=np.bool_)
+
+
+_FITS = 0.7
+_MISFIT = 0.03**2  # [m^2]
