@@ -17,7 +17,7 @@ from node.robot import BASE, LASER, ODOM, SHORT, Robot
 from oort.node.messages import transform
 
 
-def test_a_second_laser_on_the_topic_joins_the_first(node: NodeFactory) -> None:
+def test_a_second_laser_on_the_topic_joins_the_first(rospy: Any, node: NodeFactory) -> None:
     client = Client(node())
     with Robot(SHORT, laser="depth_camera_link") as other:
         other.base_on = False

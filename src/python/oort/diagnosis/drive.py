@@ -22,14 +22,10 @@ _GAP_TRAVEL, _GAP_TURN = 0.5, 1.0  # [m], [rad] meanwhile; a robot that stands m
 
 def diagnose(observer: Observer, statistics: Mapping[str, Any]) -> list[Trouble]:
     """What is wrong, the causes first; ``statistics`` are the mapper's."""
-    return [
-        *motion_troubles(observer),
-        *_odometry_scale(statistics["odometry_scale"]),
-        *_odometry_faults(statistics["odometry_faults"]),
-        *_laser(statistics["laser"]),
-        *_gaps(observer),
-        *_uncertain(statistics["tracking"]),
-    ]
+    causes = motion_troubles(observer)
+    if not causes:  # else these are its consequences
+        causes = [*_odometry_scale(statistics["odometry_scale"]), *_odometry_faults(statistics["odometry_faults"])]
+    return [*causes, *_laser(statistics["laser"]), *_gaps(observer), *_uncertain(statistics["tracking"])]
 
 
 def _odometry_scale(scale: Mapping[str, float]) -> list[Trouble]:

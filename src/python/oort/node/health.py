@@ -58,7 +58,7 @@ class MappingHealth(Health):
         if self.tracking == "lost":
             yield WARN, "Tracking is lost, mapping goes on by odometry alone; drive slowly to a place with more in view"
         for trouble in self.troubles:
-            yield WARN, trouble[0].upper() + trouble[1:]
+            yield WARN, trouble[:1].upper() + trouble[1:]
         yield from self.problems_of_queue()
 
     def figures(self) -> Iterator[tuple[str, str]]:
