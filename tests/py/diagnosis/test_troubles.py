@@ -113,6 +113,14 @@ def test_scans_and_odometry_of_different_clocks(scans_late: int) -> None:
     assert troubles_of(shifted)["clock_offset"].evidence["offset_s"] == pytest.approx(0.1 * scans_late, abs=0.1)
 
 
+@pytest.mark.parametrize("scale", [0.9, 1.1])
+def test_odometry_that_drives_too_far(scale: float) -> None:
+    scaled = [replace(scan, odometry=_pose(np.array(scan.odometry) * (scale, scale, 1.0))) for scan in scans_of(DRIVE)]
+    found = troubles_of(scaled)
+    assert set(found) == {"odometry_translation_scale"}
+    assert found["odometry_translation_scale"].evidence["scale"] == pytest.approx(1.0 / scale, abs=0.03)
+
+
 def test_odometry_that_jumps() -> None:
     scans = scans_of(DRIVE)
     half = len(scans) // 2

@@ -59,7 +59,7 @@ void BeamOrderTest::compare(const PointCloud& scan, const Pose2& T_odom_sensor, 
 void BeamOrderTest::decide() {
   if (tests_ < SensorTuning::kMinOrderTests) return;
   const auto best = static_cast<std::size_t>(std::min_element(costs_.begin(), costs_.end()) - costs_.begin());
-  bool clear = true;
+  bool clear = kOrders[best] != BeamOrder::kAtOnce || tests_ >= SensorTuning::kMinAtOnceTests;
   for (std::size_t other = 0; other < kOrders.size(); ++other) {
     if (other == best) continue;
     clear = clear && costs_[best] < SensorTuning::kClearCost * costs_[other] &&

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from oort.diagnosis.motion import motion_troubles
+from oort.diagnosis.motion import motion_troubles, scales_of
 from oort.diagnosis.observer import Observer
 from oort.diagnosis.trouble import Trouble
 
@@ -24,11 +24,16 @@ def diagnose(observer: Observer, statistics: Mapping[str, Any]) -> list[Trouble]
     """What is wrong, the causes first; ``statistics`` are the mapper's."""
     causes = motion_troubles(observer)
     if not causes:  # else these are its consequences
-        causes = [*_odometry_scale(statistics["odometry_scale"]), *_odometry_faults(statistics["odometry_faults"])]
+        causes = [
+            *_odometry_scale(observer, statistics["odometry_scale"]),
+            *_odometry_faults(statistics["odometry_faults"]),
+        ]
     return [*causes, *_laser(statistics["laser"]), *_gaps(observer), *_uncertain(statistics["tracking"])]
 
 
-def _odometry_scale(scale: Mapping[str, float]) -> list[Trouble]:
+def _odometry_scale(observer: Observer, scale: Mapping[str, float]) -> list[Trouble]:
+    """What mapping has learned, if the pairs of scans say the same: a narrow view alone learns what is not there."""
+    seen = dict(zip(("translation", "rotation"), scales_of(observer), strict=True))
     return [
         Trouble(
             f"odometry_{what}_scale",
@@ -40,7 +45,7 @@ def _odometry_scale(scale: Mapping[str, float]) -> list[Trouble]:
             ("translation", "drives", "the wheels' radius or the ticks per turn"),
             ("rotation", "turns", "the distance of the wheels, or the gyro's scale"),
         )
-        if abs(scale[what] - 1.0) >= _SCALE
+        if abs(scale[what] - 1.0) >= _SCALE and (seen[what] - 1.0) * (scale[what] - 1.0) >= 0.5 * _SCALE**2
     ]
 
 

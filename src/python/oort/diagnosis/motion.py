@@ -41,6 +41,19 @@ def motion_troubles(observer: Observer) -> list[Trouble]:
     return [] if trouble is None else [trouble]
 
 
+def scales_of(observer: Observer) -> tuple[float, float]:
+    """How far the sensor moves and turns by the scans where odometry says 1; 1 where there are few samples."""
+    odometry, scans, degenerate = columns(observer.samples)
+    turning = (np.abs(odometry[:, 2]) > _TURNING) & (np.abs(scans[:, 2]) > 0.5 * _TURNING)
+    straight = (np.abs(odometry[:, 2]) < _TURNING) & (np.hypot(odometry[:, 0], odometry[:, 1]) > _MOVING) & ~degenerate
+    ratios = (
+        np.sum(odometry[straight, :2] * scans[straight, :2], axis=1) / np.sum(odometry[straight, :2] ** 2, axis=1),
+        scans[turning, 2] / odometry[turning, 2],
+    )
+    translation, rotation = (float(np.median(ratio)) if len(ratio) >= 2 * _ENOUGH else 1.0 for ratio in ratios)
+    return translation, rotation
+
+
 def _static(observer: Observer, scans: Array) -> Trouble | None:
     told = np.array(observer.odometry)
     steps = np.diff(told, axis=0)
