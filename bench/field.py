@@ -151,7 +151,7 @@ def rows() -> list[Row]:
     made.append(Row("no_return_code", "code51", "RMSE <= 0.02 m, told", replay("code51.clf"), judge, spoiled("code51")))
     for name, words in (
         ("degrees", "radians, but look like degrees"),
-        ("millimetres", "beyond their range_max"),
+        ("millimetres", "look like millimetres"),
         ("millimetres_all", "look like millimetres"),
     ):
         row = Row("bad_scan_fields", name, "the field is named", replay(f"{name}.bag"), says(words), bag(name))
@@ -201,7 +201,7 @@ def _files() -> list[Row]:
     made.append(Row("toro_graph", "triangle.graph", "solved", toro, says("chi2|edges")))
     image = str(CASES / "map_server_map" / "map.yaml")
     localize = python("-m", "oort.localize", image, str(folder / "drive.bag.gz"), "--out", "out")
-    made.append(Row("map_server_map", "map.yaml", "named or used", localize, says("image for map_server|tracking")))
+    made.append(Row("map_server_map", "map.yaml", "named or used", localize, says("image for map_server|wrote out")))
     pen = CASES / "flipped_pen"
     mapped = replay(str(pen / "left_side.bag"), "--map", str(Path("pen").resolve().name))
     onto = python("-m", "oort.localize", "pen", str(pen / "middle.bag"), "--out", "out")
