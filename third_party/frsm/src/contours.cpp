@@ -46,7 +46,8 @@ class Linker {
       if (facing(p, side).taken()) continue;
       if (facing(q, -side).taken()) {
         propose(p, side);
-      } else if (acceptable(length, nodes_[std::min(p, q)].left, nodes_[std::max(p, q)].right)) {
+      } else if (acceptable(length, nodes_[std::min(p, q)].left, nodes_[std::max(p, q)].right) ||
+                 is_sparse_wall(p, q)) {
         facing(p, side) = {q, length};
         facing(q, -side) = {p, length};
       }
@@ -59,20 +60,33 @@ class Linker {
 
   // The best free partner on one side, looking outwards from p.
   void propose(std::size_t p, int side) {
-    double best = params_.max_adjacent_distance;
+    double best = std::numeric_limits<double>::infinity();
     std::size_t partner = kNone;
     for (int k = 1; k <= params_.search_range; ++k) {
       const std::size_t q = p + static_cast<std::size_t>(k) * static_cast<std::size_t>(side);  // wraps below 0
       if (q >= points_.size()) break;
       if (facing(q, -side).taken()) continue;
       const double d = std::hypot(points_[p].x - points_[q].x, points_[p].y - points_[q].y);
-      if (d < best) {
+      if (d < best && (d < params_.max_adjacent_distance || (k == 1 && is_sparse_wall(p, q)))) {
         best = d;
         partner = q;
       }
       if (d <= params_.always_accept_distance) break;
     }
     if (partner != kNone) queue_.emplace(best, p, partner);
+  }
+
+  // Far away, beams are farther apart than surfaces are from one another near by. Two neighbours see one surface if the
+  // line through them is not too steep for their beams.
+  bool is_sparse_wall(std::size_t p, std::size_t q) const {
+    if (p + 1 != q && q + 1 != p) return false;
+    const Point& a = points_[p];
+    const Point& b = points_[q];
+    const double between_beams = std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
+    if (between_beams > params_.max_beam_step) return false;
+    const double range_a = std::hypot(a.x, a.y);
+    const double range_b = std::hypot(b.x, b.y);
+    return std::abs(range_a - range_b) <= params_.max_beam_slope * between_beams * std::min(range_a, range_b);
   }
 
   // A long link must continue the spacing of the links beside it: walls seen at a grazing angle do, gaps do not. At the
@@ -140,6 +154,8 @@ void ContourParams::validate() const {
   check(max_distance_ratio > 0.0, "ContourParams.max_distance_ratio", "must be above 0");
   check(min_distance_for_ratio >= 0.0, "ContourParams.min_distance_for_ratio", "must not be negative");
   check(max_distance_without_ratio >= 0.0, "ContourParams.max_distance_without_ratio", "must not be negative");
+  check(max_beam_step >= 0.0, "ContourParams.max_beam_step", "must not be negative");
+  check(max_beam_slope >= 0.0, "ContourParams.max_beam_slope", "must not be negative");
   check(search_range >= 1, "ContourParams.search_range", "must be at least 1");
 }
 

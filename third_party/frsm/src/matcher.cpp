@@ -30,6 +30,13 @@ std::size_t independent_points(const Points& body, double cell) {
   return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
 }
 
+// What the table does not draw, as it is too far away, lies on nothing: it would only count as a miss.
+Points within(Points points, double radius) {
+  const auto is_far = [&](const Point& p) { return std::hypot(p.x, p.y) > radius; };
+  points.erase(std::remove_if(points.begin(), points.end(), is_far), points.end());
+  return points;
+}
+
 // The smallest number of steps that reach the half width.
 int steps(double half_width, double step) {
   return static_cast<int>(std::ceil(half_width / step - 1e-9));
@@ -151,11 +158,12 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
                      const Prior* prior, const OnLookups& on_lookups) const {
   const double cell = table.params().cell;
   check_input(guess, window, cell, params_.theta_step, prior);
-  const Points points = drop_invalid(body);
+  const Points valid = drop_invalid(body);
+  const Points points = within(valid, table.params().radius);
   const auto give_up = [&](Status status) {
     return unmatched(status, guess, window, prior, cell, params_.theta_step, points.size());
   };
-  if (points.empty()) return give_up(Status::kEmptyScan);
+  if (valid.empty()) return give_up(Status::kEmptyScan);
   if (points.size() < static_cast<std::size_t>(params_.min_points)) return give_up(Status::kTooFewPoints);
   if (table.empty()) return give_up(Status::kNoOverlap);
 

@@ -59,6 +59,20 @@ TEST(Contours, OutlierStaysAloneAndLeavesTheWallWhole) {
   EXPECT_EQ(contours[1], Contour{14});
 }
 
+TEST(Contours, FarWallOfCoarseBeamsIsOneChain) {
+  ContourParams params = ContourParams::urg();
+  params.max_beam_step = 0.02;
+  std::mt19937 random(3);
+  const Points wall = test::scan({{{20.0, -8.0}, {20.0, 8.0}}}, {}, {181, test::kPi, 30.0, 0.02}, random);
+  EXPECT_EQ(extract_contours(wall, ContourParams::urg()).size(), wall.size());  // 0.35 m apart
+  EXPECT_EQ(extract_contours(wall, params).size(), 1U);
+  // A step from one wall to another stays open, and so do walls that too coarse beams see.
+  const test::Scene step = {{{10.0, -8.0}, {10.0, 0.0}}, {{20.0, 0.0}, {20.0, 8.0}}};
+  EXPECT_EQ(extract_contours(test::scan(step, {}, {181, test::kPi, 30.0, 0.0}, random), params).size(), 2U);
+  const Points coarse = test::scan(step, {}, {61, test::kPi, 30.0, 0.0}, random);
+  EXPECT_EQ(extract_contours(coarse, params).size(), coarse.size());
+}
+
 TEST(Contours, EmptyAndSinglePoint) {
   EXPECT_TRUE(extract_contours({}, ContourParams::sick()).empty());
   const auto contours = extract_contours({{1.0, 1.0}}, ContourParams::sick());

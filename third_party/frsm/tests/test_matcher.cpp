@@ -47,6 +47,17 @@ TEST(Matcher, IdenticalScanComesBackInPlace) {
   }
 }
 
+TEST(Matcher, PointsFartherThanTheTableDrawsAreNoMisses) {
+  std::mt19937 random(4);
+  test::Scene scene = test::room();
+  scene.push_back({{-60.0, 40.0}, {60.0, 40.0}});
+  scene.erase(scene.begin() + 2);  // the room's far wall: the one outdoors is seen through the gap
+  const Points body = test::scan(scene, {}, {361, 2.0 * kPi, 80.0, 0.0}, random);
+  const Match match = Matcher().match(draw(body, {}), body, {}, {0.1, 0.1, 0.1}, nullptr);
+  EXPECT_LT(match.points, static_cast<int>(body.size()));
+  EXPECT_EQ(match.hits, match.points);
+}
+
 TEST(Matcher, FindsKnownOffsetsInATurnedRoom) {
   std::mt19937 random(2);
   std::vector<double> distances, turns;
@@ -194,9 +205,12 @@ TEST(Matcher, SaysWhyThereIsNoMatch) {
   expect_guess({}, table, Status::kEmptyScan);
   expect_guess({{kNan, 0.0}, {0.0, kNan}}, table, Status::kEmptyScan);
   expect_guess({{1.0, 0.0}}, table, Status::kTooFewPoints);
+  Points far = body;
+  for (Point& p : far) p.x += 100.0;
+  expect_guess(far, table, Status::kTooFewPoints);
   expect_guess(body, Table(), Status::kNoOverlap);
   Points elsewhere = body;
-  for (Point& p : elsewhere) p.x += 100.0;
+  for (Point& p : elsewhere) p.x += 15.0;
   expect_guess(elsewhere, table, Status::kNoOverlap);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/local_slam/frsm_scan_tracker.hpp"
 
+#include "oort/local_slam/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
 
@@ -12,6 +13,7 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   frsm::TrackerParams params;
   params.table = table_params(p);
   params.contours = frsm::ContourParams::urg();
+  params.contours.max_beam_step = LocalSlamTuning::kMaxBeamStep;
   params.matcher = matcher_params(p);
   params.add = p.key_scan_distance > 0.0 ? frsm::AddRule{} : frsm::AddRule::by_hits(p.add_scan_hit_thresh);
   if (p.key_scan_distance > 0.0) {

@@ -37,6 +37,10 @@ struct LocalSlamTuning {
   static constexpr double kSurfaceError = 0.005;  ///< [m]
   static constexpr double kMinExtent = 0.1;       ///< [m]
 
+  /// [rad] Beams no farther apart that end at nearly the same range see one wall, however far: lasers step by 1 degree
+  /// at most. Undone, a wall 20 m away is dots 0.35 m apart, and of fr-clinic 66 % of the scans are matched instead of 95.
+  static constexpr double kMaxBeamStep = 0.02;
+
   // When a fresh local map begins.
   static constexpr int kMaxRejectedNodes = 5;  ///< in a row that only odometry places
   static constexpr int kMaxRejectedScans = 5;  ///< in a row that fit too little (cartographer_matcher)

@@ -27,7 +27,7 @@ struct Prior {
 enum class Status {
   kOk,
   kEmptyScan,     ///< no valid point: the pose is the guess
-  kTooFewPoints,  ///< fewer valid points than asked for: the pose is the guess
+  kTooFewPoints,  ///< fewer points, that are valid and near enough, than asked for: the pose is the guess
   kNoOverlap,     ///< nothing to match against within the window: the pose is the guess
   kSaturated,     ///< the best pose lies on the border of the window: the true one may lie beyond
   kDegenerate,    ///< a direction is not seen by the scan (corridor): there the pose is the prior's, or the guess
@@ -82,7 +82,8 @@ class Matcher {
  public:
   explicit Matcher(const MatcherParams& params = {});
 
-  /// `body`: points in the body frame; those that are not finite are ignored. `prior` may be null.
+  /// `body`: points in the body frame; those that are not finite, or farther away than the table draws
+  /// (TableParams.radius), are ignored. `prior` may be null.
   /// Throws std::invalid_argument on a guess or window that is not finite, or a covariance that is not positive
   /// definite.
   Match match(const Table& table, const Points& body, const Pose& guess, const Window& window, const Prior* prior,
