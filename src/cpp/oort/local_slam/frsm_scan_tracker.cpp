@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/local_slam/frsm_scan_tracker.hpp"
 
+#include <algorithm>
+
 #include "oort/local_slam/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 #include "oort/matching/frsm_setup.hpp"
@@ -9,7 +11,7 @@
 namespace oort {
 namespace {
 
-frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
+frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p, bool use_odometry) {
   frsm::TrackerParams params;
   params.table = table_params(p);
   params.contours = frsm::ContourParams::urg();
@@ -24,8 +26,11 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p) {
   params.max_num_scans = p.max_num_scans;
   params.initial_search_range_xy = p.initial_search_range_xy;
   params.initial_search_range_theta = p.initial_search_range_theta;
-  params.max_search_range_xy = p.max_search_range_xy;
-  params.max_search_range_theta = p.max_search_range_theta;
+  const auto widest = [&](double parameter, double without_odometry) {
+    return use_odometry ? parameter : std::max(parameter, without_odometry);
+  };
+  params.max_search_range_xy = widest(p.max_search_range_xy, LocalSlamTuning::kBlindWindow);
+  params.max_search_range_theta = widest(p.max_search_range_theta, LocalSlamTuning::kBlindWindowTheta);
   params.stationary_motion_model = p.stationary_motion_model;
   return params;
 }
@@ -38,7 +43,8 @@ Rejection rejection_of_unmatched(frsm::Status status) {
 
 }  // namespace
 
-FrsmScanTracker::FrsmScanTracker(const FrsmMatcherParameters& parameters) : tracker_(tracker_params(parameters)) {}
+FrsmScanTracker::FrsmScanTracker(const FrsmMatcherParameters& parameters, bool use_odometry)
+    : tracker_(tracker_params(parameters, use_odometry)) {}
 
 void FrsmScanTracker::reset(const Pose2& T_local_sensor) {
   tracker_.reset(to_frsm(T_local_sensor));

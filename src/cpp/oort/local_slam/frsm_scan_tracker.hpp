@@ -10,7 +10,8 @@ namespace oort {
 /// FRSM's tracker (incremental_graph_builder.frsm_matcher).
 class FrsmScanTracker : public ScanTracker {
  public:
-  explicit FrsmScanTracker(const FrsmMatcherParameters& parameters);
+  /// `use_odometry`: whether motions are odometry's; else they are guesses, and the search is as wide as those need.
+  FrsmScanTracker(const FrsmMatcherParameters& parameters, bool use_odometry);
 
   void reset(const Pose2& T_local_sensor) override;
   TrackedScan track(const frsm::Points& points, double time, const Motion& motion,

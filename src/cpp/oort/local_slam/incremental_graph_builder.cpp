@@ -35,7 +35,8 @@ Eigen::Matrix3d doubted_motion() {
       .asDiagonal();
 }
 
-OdometryModel odometry_model(const OdometryNoiseParameters& p) {
+OdometryModel odometry_model(const OdometryNoiseParameters& p, bool use_odometry) {
+  if (!use_odometry) return LocalSlamTuning::kNoOdometry;
   return {p.translation_per_meter, p.translation_per_radian, p.rotation_per_meter,
           p.rotation_per_radian,   p.translation_floor,      p.rotation_floor};
 }
@@ -60,18 +61,20 @@ LinkParameters link_parameters(const IncrementalGraphBuilderParameters& paramete
 IncrementalGraphBuilder::IncrementalGraphBuilder(const Parameters& parameters)
     : parameters_(parameters.incremental_graph_builder),
       motion_model_(parameters_.odometry_model == "motion"),
-      odometry_model_(odometry_model(parameters_.odometry_noise), parameters_.odometry_noise.least_learned),
+      odometry_model_(odometry_model(parameters_.odometry_noise, parameters.use_odometry),
+                      parameters.use_odometry ? parameters_.odometry_noise.least_learned : 1.0),
       link_(link_parameters(parameters_)),
-      tracker_(make_scan_tracker(parameters_)) {}
+      tracker_(make_scan_tracker(parameters)) {}
 
 void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
   tracker_->reset(T_local_sensor);
 }
 
 TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                                           const std::vector<Pose2>& alternatives) {
+                                           const std::vector<Pose2>& alternatives,
+                                           const std::optional<Eigen::Matrix3d>& covariance) {
   const Eigen::Matrix3d doubt = alternatives.empty() ? Eigen::Matrix3d::Zero() : doubted_motion();
-  const auto motion = [&](const Pose2& T) { return Motion{T, prior_covariance(T) + doubt}; };
+  const auto motion = [&](const Pose2& T) { return Motion{T, covariance.value_or(prior_covariance(T)) + doubt}; };
   std::vector<Motion> others;
   others.reserve(alternatives.size());
   for (const Pose2& alternative : alternatives) others.push_back(motion(alternative));

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <frsm/types.hpp>
 #include <memory>
+#include <optional>
 
 #include "oort/geometry/pose2.hpp"
 #include "oort/graph/graph.hpp"
@@ -50,8 +51,10 @@ class IncrementalGraphBuilder {
   /// Takes the next scan: its returns in the sensor frame and the sensor's motion by odometry since the last one taken
   /// (since begin(): the identity).
   /// `alternatives`: what the motion may have been instead, where odometry is doubted.
+  /// `covariance`: of the motion, along the axes of the frame before, where odometry's model does not tell.
   TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                    const std::vector<Pose2>& alternatives = {});
+                    const std::vector<Pose2>& alternatives = {},
+                    const std::optional<Eigen::Matrix3d>& covariance = std::nullopt);
 
   /// Whether a scan's match says where it is: usable, and with an inlier ratio that is accepted.
   bool is_placed(const TrackedScan& scan) const;

@@ -31,22 +31,27 @@ void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
 }
 
 void LocalSlam::begin_map() {
-  monitor_.forget();
+  forget_motion();
   trajectory_.begin_map();
   lasers_.forget();
   last_.reset();
 }
 
 void LocalSlam::begin_session(const SessionStart& start, std::uint64_t node_count) {
-  monitor_.forget();
+  forget_motion();
   trajectory_.begin_session(start, node_count);
   lasers_.forget();
   last_.reset();
 }
 
 void LocalSlam::interrupt() {
-  monitor_.forget();
+  forget_motion();
   trajectory_.interrupt();
+}
+
+void LocalSlam::forget_motion() {
+  monitor_.forget();
+  velocity_.forget();
 }
 
 LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base) {
@@ -62,15 +67,25 @@ LocalSlam::Result LocalSlam::add_scan(const LaserScan& scan, const Pose2& T_odom
   const bool can_match = has_returns(now);
   if (!can_match) ++counts_.scans_too_small;
   bool due = can_match && is_due(now);
-  if (can_match && (due || parameters_.incremental_graph_builder.match_every_scan)) {
+  const bool needs_match = parameters_.incremental_graph_builder.match_every_scan || !parameters_.use_odometry;
+  if (can_match && (due || needs_match)) {
     trajectory_.track(now, hypotheses, T_base_sensor());
   } else {
     trajectory_.extrapolate(now);
   }
   now.missed = now.missed || !can_match;
+  if (!parameters_.use_odometry) due = can_match && is_due(now);  // how far the base moved is known only now
   due = due || has_moved_unnoticed(now);
 
-  if (last_) monitor_.moved(between(last_->T_odom_base, now.T_odom_base), now.odometry_is_wrong);
+  if (last_) {
+    const Pose2 moved = between(last_->T_odom_base, now.T_odom_base);
+    if (parameters_.use_odometry) {
+      monitor_.moved(moved, now.odometry_is_wrong);
+    } else {
+      velocity_.moved(moved, !now.missed);
+      now.T_odom_base_measured = now.T_odom_base;
+    }
+  }
 
   Result result;
   result.outcome = due ? ScanOutcome::kNode : can_match ? ScanOutcome::kLocated : ScanOutcome::kSkipped;
@@ -95,6 +110,10 @@ std::optional<TrajectoryNode> LocalSlam::make_node() {
 /// Where odometry, with what it is always wrong by taken out of each motion, has the base; or where it likelier is, if
 /// no robot moves as odometry says. Returns what the base may have done since the last scan.
 MotionHypotheses LocalSlam::expect(LocalScan& scan) {
+  if (!parameters_.use_odometry) {
+    predict(scan);
+    return {};
+  }
   const IncrementalGraphBuilder& matcher = trajectory_.matcher();
   scan.T_odom_base = scan.T_odom_base_measured;
   MotionHypotheses hypotheses;
@@ -106,6 +125,18 @@ MotionHypotheses LocalSlam::expect(LocalScan& scan) {
   }
   scan.T_odom_sensor = scan.T_odom_base * T_base_sensor();
   return hypotheses;
+}
+
+/// The same where no odometry tells: the odometry frame begins with the first scan's base, and the base goes on as it
+/// moved. The match, if there is one, will say more.
+void LocalSlam::predict(LocalScan& scan) {
+  const ConstantVelocity::Prediction prediction = velocity_.predict(scan.cloud.time);
+  if (last_) {
+    scan.T_odom_base = last_->T_odom_base * prediction.T_before_after;
+    scan.motion_covariance = prediction.covariance;
+  }
+  scan.T_odom_base_measured = scan.T_odom_base;
+  scan.T_odom_sensor = scan.T_odom_base * T_base_sensor();
 }
 
 bool LocalSlam::has_returns(const LocalScan& scan) const {

@@ -8,6 +8,7 @@
 #include "oort/geometry/point_cloud.hpp"
 #include "oort/geometry/sweep.hpp"
 #include "oort/local_slam/trajectory_builder.hpp"
+#include "oort/odometry/constant_velocity.hpp"
 #include "oort/odometry/odometry_monitor.hpp"
 #include "oort/parameters/parameters.hpp"
 #include "oort/sensor/laser_rig.hpp"
@@ -25,8 +26,8 @@ struct LocalCounts {
   std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: extrapolated by odometry
 };
 
-/// The local lane: a scan with odometry in, its pose relative to the newest node out. The work for a scan is bounded by
-/// constants and waits for nothing; the map's solution has no bearing on it.
+/// The local lane: a scan with odometry in (or without: parameter use_odometry), its pose relative to the newest node
+/// out. The work for a scan is bounded by constants and waits for nothing; the map's solution has no bearing on it.
 class LocalSlam {
  public:
   struct Result {
@@ -72,7 +73,9 @@ class LocalSlam {
   const TrajectoryCounts& trajectory_counts() const { return trajectory_.counts(); }
 
  private:
+  void forget_motion();
   MotionHypotheses expect(LocalScan& scan);
+  void predict(LocalScan& scan);
   bool has_returns(const LocalScan& scan) const;
   bool is_due(const LocalScan& scan) const;
   bool has_moved_unnoticed(const LocalScan& scan) const;
@@ -80,6 +83,7 @@ class LocalSlam {
   Parameters parameters_;
   LaserRig lasers_;
   OdometryMonitor monitor_;
+  ConstantVelocity velocity_;  // in the place of odometry
   TrajectoryBuilder trajectory_;
   std::optional<LocalScan> last_;
   LocalCounts counts_;

@@ -7,11 +7,12 @@
 
 namespace oort {
 
-std::unique_ptr<ScanTracker> make_scan_tracker(const IncrementalGraphBuilderParameters& parameters) {
+std::unique_ptr<ScanTracker> make_scan_tracker(const Parameters& all) {
+  const IncrementalGraphBuilderParameters& parameters = all.incremental_graph_builder;
   if (parameters.scanmatcher == "cartographer_matcher") {
     return std::make_unique<GridScanTracker>(parameters.cartographer_matcher);
   }
-  return std::make_unique<FrsmScanTracker>(parameters.frsm_matcher);
+  return std::make_unique<FrsmScanTracker>(parameters.frsm_matcher, all.use_odometry);
 }
 
 }  // namespace oort

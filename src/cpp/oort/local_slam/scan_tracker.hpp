@@ -61,6 +61,6 @@ class ScanTracker {
 };
 
 /// The tracker that incremental_graph_builder.scanmatcher names.
-std::unique_ptr<ScanTracker> make_scan_tracker(const IncrementalGraphBuilderParameters& parameters);
+std::unique_ptr<ScanTracker> make_scan_tracker(const Parameters& parameters);
 
 }  // namespace oort

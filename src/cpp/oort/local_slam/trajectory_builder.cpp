@@ -65,10 +65,12 @@ void TrajectoryBuilder::track(LocalScan& scan, const MotionHypotheses& hypothese
     const Pose2 T_odom_base = T_odom_base_before * hypotheses.T_before_after[k];
     alternatives.push_back(between(T_odom_sensor_tracked_, T_odom_base * T_base_sensor));
   }
-  scan.tracked = matcher_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor, alternatives);
+  scan.tracked =
+      matcher_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor, alternatives, scan.motion_covariance);
   scan.was_tracked = true;
   scan.missed = !is_first && !matcher_.is_placed(scan.tracked);
   if (is_doubted) settle_odometry(scan, hypotheses, T_odom_base_before, T_base_sensor);
+  if (!parameters_.use_odometry && !is_first && !scan.missed) follow_match(scan, T_base_sensor);
   if (scan.tracked.restarted) local_map_ = LocalMap::kFresh;
   // What another laser sees is not on the local map: it begins anew here, in the same frame.
   if (scan.view_grew && !is_first && scan.tracked.usable()) begin_local_map(scan, scan.tracked.T_local_sensor);
@@ -97,6 +99,12 @@ void TrajectoryBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses&
                             .cwiseAbs2()
                             .asDiagonal();
   doubt_since_anchor_ = doubt_since_newest_;
+}
+
+/// The odometry that there is: from match to match.
+void TrajectoryBuilder::follow_match(LocalScan& scan, const Pose2& T_base_sensor) const {
+  scan.T_odom_sensor = T_odom_sensor_tracked_ * between(T_local_sensor_tracked_, scan.tracked.T_local_sensor);
+  scan.T_odom_base = scan.T_odom_sensor * inverse(T_base_sensor);
 }
 
 void TrajectoryBuilder::extrapolate(LocalScan& scan) const {
@@ -186,7 +194,8 @@ TrajectoryNode TrajectoryBuilder::extend(LocalScan& scan) {
   };
   if (!believed || after_gap) {
     Eigen::Matrix3d covariance = matcher_.odometry_covariance(T_newest_node, match.rejection) + doubt_since_newest_;
-    if (local_map_ == LocalMap::kFreshPoor) covariance += least_contradiction();
+    const bool is_unknown = local_map_ == LocalMap::kFreshPoor || (is_fresh && !parameters_.use_odometry);
+    if (is_unknown) covariance += least_contradiction();
     add_edge(newest_.id, T_newest_node, covariance, ConstraintType::kOdometry);
   }
   if (believed) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
@@ -21,7 +22,9 @@ struct LocalScan {
   Pose2 T_odom_base_measured;  ///< as odometry has it
   Pose2 T_odom_base;           ///< with the corrections of every motion so far
   Pose2 T_odom_sensor;         ///< the same
-  TrackedScan tracked;         ///< its pose is odometry's as long as was_tracked is false
+  /// Of its motion since the scan before, along the axes of the frame before, where no odometry tells of it.
+  std::optional<Eigen::Matrix3d> motion_covariance;
+  TrackedScan tracked;  ///< its pose is odometry's as long as was_tracked is false
   bool was_tracked = false;
   bool missed = false;  ///< nothing that it shows says where it is
   bool is_node = false;
@@ -87,7 +90,7 @@ class TrajectoryBuilder {
 
   /// Places a scan by matching it with the local map. Where odometry is doubted, the scan's odometry becomes what the
   /// match makes of the hypotheses on the base's motion since the last scan; if it speaks against odometry, odometry is
-  /// doubted in the edge that the motion takes part in.
+  /// doubted in the edge that the motion takes part in. Without odometry, matches take its place.
   void track(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_base_sensor);
   /// Places a scan by odometry alone.
   void extrapolate(LocalScan& scan) const;
@@ -116,6 +119,7 @@ class TrajectoryBuilder {
   void forget();
   void settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_odom_base_before,
                        const Pose2& T_base_sensor);
+  void follow_match(LocalScan& scan, const Pose2& T_base_sensor) const;
   void begin_local_map(LocalScan& scan, const Pose2& T_local_sensor);
   void restart_if_poor(LocalScan& scan);
   void restart_if_rejected(const LocalScan& scan, bool matched);

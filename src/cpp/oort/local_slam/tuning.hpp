@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "oort/odometry/odometry_model.hpp"
 
 namespace oort {
 
@@ -38,8 +39,15 @@ struct LocalSlamTuning {
   static constexpr double kMinExtent = 0.1;       ///< [m]
 
   /// [rad] Beams no farther apart that end at nearly the same range see one wall, however far: lasers step by 1 degree
-  /// at most. Undone, a wall 20 m away is dots 0.35 m apart, and of fr-clinic 66 % of the scans are matched instead of 95.
+  /// at most. Undone, a wall 20 m away is dots 0.35 m apart, and of fr-clinic 66 % of the scans are matched instead
+  /// of 95.
   static constexpr double kMaxBeamStep = 0.02;
+
+  // Without odometry: half widths of the search about where the last motion leads,
+  static constexpr double kBlindWindow = 0.3;       ///< [m]
+  static constexpr double kBlindWindowTheta = 0.6;  ///< [rad]
+  /// and what that prediction is worth on an edge, in directions that the match does not see. [m, rad]
+  static constexpr OdometryModel kNoOdometry{0.3, 0.1, 0.1, 0.3, 0.05, 0.05};
 
   // When a fresh local map begins.
   static constexpr int kMaxRejectedNodes = 5;  ///< in a row that only odometry places

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "oort/odometry/tuning.hpp"
@@ -29,7 +28,7 @@ bool MotionHypotheses::holds(const Pose2& T_before_after_matched) const {
 }
 
 MotionHypotheses OdometryMonitor::judge(double time, const Pose2& T_before_after) {
-  const double interval = last_time_ ? paced(time - *last_time_) : 0.0;
+  const double interval = last_time_ ? pace_.next(time - *last_time_) : 0.0;
   last_time_ = time;
   judged_ = {interval, T_before_after};
   MotionHypotheses hypotheses;
@@ -90,21 +89,10 @@ void OdometryMonitor::moved(const Pose2& T_before_after, bool is_matched) {
 
 void OdometryMonitor::forget() {
   last_time_.reset();
-  intervals_.clear();
+  pace_.forget();
   believed_.reset();
   missed_ = Pose2{};
   is_frozen_ = false;
-}
-
-/// The time between two scans. Stamps are often those of arrival: scans that come in bursts were not taken in one. What
-/// is much shorter than usual is taken for the usual.
-double OdometryMonitor::paced(double interval) {
-  if (interval > 0.0) intervals_.push_back(interval);
-  if (intervals_.size() > OdometryTuning::kUsualIntervals) intervals_.pop_front();
-  if (intervals_.empty()) return interval;
-  const double usual =
-      std::accumulate(intervals_.begin(), intervals_.end(), 0.0) / static_cast<double>(intervals_.size());
-  return interval < OdometryTuning::kBurst * usual ? usual : interval;
 }
 
 bool OdometryMonitor::is_possible(double interval, const Pose2& motion) const {
@@ -122,7 +110,7 @@ bool OdometryMonitor::is_possible(double interval, const Pose2& motion) const {
 
 /// The last motion for so long; none if the stamps do not tell.
 std::optional<Pose2> OdometryMonitor::going_on(double interval) const {
-  if (intervals_.size() < OdometryTuning::kMinIntervals) return std::nullopt;
+  if (!pace_.is_known()) return std::nullopt;
   if (!believed_ || believed_->interval < OdometryTuning::kMinInterval ||
       believed_->interval > OdometryTuning::kMaxInterval) {
     return std::nullopt;

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/odometry/scan_pace.hpp"
 
 namespace oort {
 
@@ -59,13 +59,12 @@ class OdometryMonitor {
     Pose2 T_before_after;
   };
 
-  double paced(double interval);
   bool is_possible(double interval, const Pose2& motion) const;
   std::optional<Pose2> going_on(double interval) const;
 
   std::optional<double> last_time_;
-  std::deque<double> intervals_;  // the latest [s]
-  Motion judged_;                 // by odometry, not yet accepted
+  ScanPace pace_;
+  Motion judged_;  // by odometry, not yet accepted
   bool judged_doubted_ = false;
   std::optional<Motion> believed_;  // the last motion
   Pose2 missed_;                    // what was accepted while odometry was frozen

@@ -72,6 +72,15 @@ struct OdometryTuning {
   static constexpr std::size_t kMinIntervals = 5;     ///< until it is known
   static constexpr double kBurst = 0.7;  ///< of the usual interval; shorter ones are of scans that queued up
 
+  // Without odometry: the base goes on as it moved, but for what wheels and people who carry a sensor do within a
+  // scan's interval. Chosen on fr079, Intel and simulated homes.
+  static constexpr double kUsualAcceleration = 4.0;      ///< [m/s^2]
+  static constexpr double kUsualTurnAcceleration = 8.0;  ///< [rad/s^2]
+  static constexpr double kPredictionError = 0.02;       ///< [m], of the last match and of stamps
+  static constexpr double kPredictionErrorTheta = 0.02;  ///< [rad]
+  static constexpr double kMaxRatio = 2.0;               ///< of an interval to that over which the motion is known
+  static constexpr double kUnmatchedVelocity = 0.5;      ///< share that is left after a scan without a match
+
   // Faults: odometry that says exactly nothing while the robot was faster is frozen, or the robot stopped dead.
   static constexpr double kMoving = 0.15;    ///< [m/s]
   static constexpr double kTurning = 0.2;    ///< [rad/s]

@@ -37,6 +37,10 @@ void declare_general(const Section& v, Parameters& p) {
       .own(0.0, "The last scans of a drive count as well.");
   v(p.use_imu, "use_imu", false, "Whether a gyro's yaw rate takes the place of odometry's turns (docs/motion.md).")
       .own(false);
+  v(p.use_odometry, "use_odometry", true,
+    "Whether odometry says how the base moves. Without, scans alone do: what odometry there may be is ignored "
+    "(docs/tracking.md).")
+      .own(true);
   v(p.min_pointcloud_size, "min_pointcloud_size", {3, "points", {1, 100000}}, "Scans with fewer returns are skipped.");
   v(p.switchable_constraint_scale, "switchable_constraint_scale", {4.0, "", {1e-6, 1e6}},
     "Weight of the squared pull of a loop closure's switch towards on: the larger, the harder it is switched off.")

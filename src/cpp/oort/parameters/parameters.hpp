@@ -286,6 +286,7 @@ struct Parameters {
   bool find_body;
   double max_extrapolation;
   bool use_imu;
+  bool use_odometry;
   int min_pointcloud_size;
   double switchable_constraint_scale;
   bool final_refinement;
