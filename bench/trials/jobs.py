@@ -45,6 +45,7 @@ class Job:
     source: Recipe | Log
     measures: tuple[Measure, ...] = ()
     """of a simulated drive, beyond what is measured of all"""
+    use_odometry: bool = True
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,9 @@ class Bench:
     def run(self, job: Job) -> Figures:
         """Replays a drive and measures it. Of a log, the results are written too, as its cost is that of the whole."""
         if isinstance(job.source, Log):
-            return self._run_log(job.name, job.source)
+            return self._run_log(job, job.source)
         drive = self.store.load(job.source)
-        replayed = self._replay(drive, job.source)
+        replayed = self._replay(drive, job)
         figures = cost(replayed) | counts(replayed)
         for measure in (measure_all, *job.measures):
             figures |= measure(drive, replayed)
@@ -71,20 +72,28 @@ class Bench:
         """Replays a simulated drive once more and leaves its map and a picture that compares it with the truth."""
         assert isinstance(job.source, Recipe)
         drive = self.store.load(job.source)
-        replayed = self._replay(drive, job.source)
+        replayed = self._replay(drive, job)
         folder = self.keep / job.name
         write_results(replayed.drive, folder, str(folder.absolute() / "map"))
         draw(folder / "truth.png", drive, replayed)
         return {}
 
-    def _replay(self, drive: Drive, recipe: Recipe) -> Replayed:
-        mark = drive.fault_times[0] - 1e-6 if drive.fault_times is not None else math.inf
-        return replay(recording_of(drive, recipe.name), self.parameters, events_of(drive), mark)
+    def _parameters(self, job: Job) -> Parameters:
+        parameters = self.parameters.copy()
+        if not job.use_odometry:
+            parameters.set("use_odometry", False)
+        return parameters
 
-    def _run_log(self, name: str, log: Log) -> Figures:
+    def _replay(self, drive: Drive, job: Job) -> Replayed:
+        mark = drive.fault_times[0] - 1e-6 if drive.fault_times is not None else math.inf
+        return replay(recording_of(drive, job.name), self._parameters(job), events_of(drive), mark)
+
+    def _run_log(self, job: Job, log: Log) -> Figures:
         folder = datasets() / "radish"
-        replayed = replay(open_recording(folder / f"{log.name}.clf.bz2", max_range=log.max_range), self.parameters)
-        out = self.keep / name
+        parameters = self._parameters(job)
+        recording = open_recording(folder / f"{log.name}.clf.bz2", max_range=log.max_range, parameters=parameters)
+        replayed = replay(recording, parameters)
+        out = self.keep / job.name
         write_results(replayed.drive, out, str(out.absolute() / "map"))
         figures = cost(replayed) | counts(replayed)
         trajectory = Trajectory(tuple(replayed.drive.recorder.stamps), replayed.T_map_base)

@@ -45,6 +45,14 @@ def _logs(_: int) -> list[Job]:
     return [Job(f"logs/{log}-{name}", Log(log, limit)) for name, limit in ranges for log in ("fr079", "intel")]
 
 
+def _logs_without_odometry(_: int) -> list[Job]:
+    return [Job(f"logs-alone/{log}", Log(log, None), use_odometry=False) for log in ("fr079", "intel")]
+
+
+def _homes_without_odometry(homes: int) -> list[Job]:
+    return [Job(f"homes-alone/{seed}", Recipe(seed), use_odometry=False) for seed in range(1, homes + 1)]
+
+
 def _summarise_logs(results: Results) -> Summary:
     kept = ("error", "error_std", "degrees", "cpu_s", "ms_p50", "ms_p99", "closures_on", "closures_off", "nodes")
     return {f"{name} {key}": figures[key] for name, figures in results.items() for key in kept}
@@ -191,6 +199,8 @@ def _fault(fault: str) -> Row:
 ROWS = (
     Row("logs", _logs, "error", _summarise_logs),
     Row("homes", _simulated("homes", Recipe), "ate", _summarise_homes),
+    Row("logs-alone", _logs_without_odometry, "error", _summarise_logs),
+    Row("homes-alone", _homes_without_odometry, "ate", _summarise_homes),
     _fov(120),
     _fov(90),
     _fov(60),

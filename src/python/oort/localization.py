@@ -95,6 +95,7 @@ def find_start(map_: Map, parameters: Parameters, recording: Recording) -> Pose:
 
     Raises InputError if the whole recording does not tell where on the map it was taken.
     """
+    recording.require_odometry("a search for where it begins")
     localizer = Localizer(ReferenceMap(map_, parameters), parameters, recording.sensor_on_base)
     first: Scan | None = None
     for scan in recording.scans():

@@ -84,8 +84,8 @@ def test_lasers_that_share_a_topic_are_chosen_by_frame(tmp_path: Path) -> None:
 
 def test_static_odometry_is_none(tmp_path: Path) -> None:
     bag = Bag().tf(0.0, "odom", "base", topic="/tf_static").tf(0.0, "base", "laser", topic="/tf_static")
-    with pytest.raises(InputError, match=r"odom -> base is a static transform.*that is no odometry"):
-        open_recording(bag.scan(1.0).ros1(tmp_path / "a.bag"))
+    recording = open_recording(bag.scan(1.0).ros1(tmp_path / "a.bag"))
+    assert "odom -> base is a static transform" in recording.without_odometry
     assert open_recording(odometry(bag).ros1(tmp_path / "b.bag")).num_scans == 2  # a topic tells it
 
 

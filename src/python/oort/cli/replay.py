@@ -79,6 +79,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--resume", metavar="BASE", help="a saved map to go on with")
     add_pose_argument(parser, "--pose", "the sensor's pose in it at the start [m, rad]; searched for if not given")
     add_checksum_argument(parser)
+    parser.add_argument(
+        "--no-odometry", action="store_true", help="ignore odometry: the scans alone say how the base moves"
+    )
     parser.add_argument("--events", metavar="FILE", help="the service calls of the drive, a JSON list of t, call, args")
     parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
     parser.add_argument(
@@ -93,6 +96,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> int:
     parameters = read_parameters(args.params)
+    if args.no_odometry:
+        parameters.set("use_odometry", False)
     events = read_events(args.events) if args.events else []
     recording = recording_of(args, parameters)
     resume = None

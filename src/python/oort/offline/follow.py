@@ -53,6 +53,7 @@ def follow(
 
     Raises InputError if there is no scan, or the map is empty or contradicts itself.
     """
+    recording.require_odometry("following a robot on a map")
     localizer = Localizer(map_, parameters, recording.sensor_on_base)
     if start is not None:
         localizer.start_at(start, start_covariance())

@@ -69,6 +69,9 @@ def replay(
     scan could be mapped.
     """
     parameters = Parameters() if parameters is None else parameters
+    if recording.without_odometry:
+        parameters = parameters.copy()
+        parameters.set("use_odometry", False)
     watch = Stopwatch()
     session = Session(parameters, recording.sensor_on_base, naming=service, keep_attempts=MOST)
     recorder = TrajectoryRecorder(recording.sensor_on_base)

@@ -80,6 +80,7 @@ def read_bag(
         num_scans=sum(usable),
         notes=(*container.notes, *rig.notes, *told, *_skip_notes(survey, usable)),
         source=lambda: _scans(container, survey, rig, corrections, limits),
+        without_odometry=rig.without_odometry,
     )
 
 

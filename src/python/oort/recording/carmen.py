@@ -16,6 +16,7 @@ from oort.errors import InputError
 from oort.poses import between
 from oort.recording.limits import ScanLimits
 from oort.recording.packed import DAMAGED, PACKED
+from oort.recording.rig import is_parked
 from oort.recording.scan_fields import find_no_return
 from oort.recording.types import Pose, Recording, Scan
 
@@ -34,8 +35,12 @@ class _Reading(NamedTuple):
     laser: Pose  # T_odom_sensor
 
 
-def read_carmen(path: Path, *, name: str, message: str | None, mount: Pose | None, limits: ScanLimits) -> Recording:
+def read_carmen(
+    path: Path, *, name: str, message: str | None, mount: Pose | None, limits: ScanLimits, use_odometry: bool = True
+) -> Recording:
     """Reads a whole CARMEN log. `message` is FLASER or ROBOTLASER1, None for the one there is.
+
+    Odometry that never changes is none.
 
     The sensor's place on the base is the difference of the laser's and the robot's pose in the first scan; InputError
     if it changes over the log. The time of a scan is the ipc timestamp.
@@ -54,6 +59,10 @@ def read_carmen(path: Path, *, name: str, message: str | None, mount: Pose | Non
         notes.append(f"scans skipped, without readings: {len(readings) - len(filled)}")
     scans, told = _limited([reading.scan for reading in filled], limits)
     notes += told
+    without = _why_without_odometry(scans, use_odometry)
+    if without:
+        scans = [replace(scan, odometry=(0.0, 0.0, 0.0)) for scan in scans]
+        notes.append(f"no odometry: {without}; the scans alone say how the base moves")
     if mount is not None:
         notes.append("the laser sits on the base where --mount says, whatever the log tells")
     return Recording(
@@ -63,6 +72,7 @@ def read_carmen(path: Path, *, name: str, message: str | None, mount: Pose | Non
         num_scans=len(scans),
         notes=tuple(notes + _notes(scans, others)),
         source=lambda: iter(scans),
+        without_odometry=without,
     )
 
 
@@ -222,6 +232,13 @@ def _mount(path: Path, readings: list[_Reading]) -> Pose:
         )
     x, y, theta = mounts[0].tolist()
     return x, y, theta
+
+
+def _why_without_odometry(scans: list[Scan], use_odometry: bool) -> str:
+    if not use_odometry:
+        return "use_odometry is off (--no-odometry)"
+    samples = np.array([(scan.time, *scan.odometry) for scan in scans])
+    return "the log has the same robot pose in every scan" if is_parked(samples) else ""
 
 
 def _limited(scans: list[Scan], limits: ScanLimits) -> tuple[list[Scan], list[str]]:

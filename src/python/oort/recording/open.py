@@ -48,10 +48,11 @@ def open_recording(
     of one topic in several frames.
     `odom_frame` names a bag's odometry frame where it is not called "odom", and `imu_topic` the IMU whose gyro takes
     the place of its turns. Of `parameters` (default: Parameters()) those count that say what is made of odometry:
-    use_imu, which takes the bag's only IMU, motion_compensation and max_extrapolation. Readings at or beyond
-    `max_range` [m], below `min_range` [m] and in the sectors of `masks` are no return (`ScanLimits`). `mount` is where
-    the laser sits on the base (T_base_sensor), whatever the recording says; `scan_frame` chooses among the lasers of
-    one topic.
+    use_imu, which takes the bag's only IMU, motion_compensation, max_extrapolation and use_odometry. A recording whose
+    odometry is missing, or never changes, has none (Recording.without_odometry); replay() then maps without.
+    Readings at or beyond `max_range` [m], below `min_range` [m] and in the sectors of `masks` are no return
+    (`ScanLimits`). `mount` is where the laser sits on the base (T_base_sensor), whatever the recording says;
+    `scan_frame` chooses among the lasers of one topic.
 
     Raises InputError if the recording is missing, damaged, cut short, ambiguous, or without scans or odometry, and
     ParameterError for a limit or a mount that cannot be.
@@ -78,7 +79,12 @@ def open_recording(
         if imu_topic is not None:
             raise ParameterError(f"{path} is a CARMEN log: it has no IMU, so leave out imu_topic")
         recording = read_carmen(
-            path, name=recording_name(path), message=topics[0] if topics else None, mount=mount, limits=limits
+            path,
+            name=recording_name(path),
+            message=topics[0] if topics else None,
+            mount=mount,
+            limits=limits,
+            use_odometry=parameters is None or bool(parameters.get("use_odometry")),
         )
         if parameters is not None and parameters.get("use_imu"):
             note = "a CARMEN log has no IMU: use_imu has no effect, turns are those of odometry"

@@ -5,6 +5,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from oort._core import OdometryBuffer, Parameters
 from oort.errors import InputError
@@ -14,6 +15,8 @@ from oort.recording.motion import Placement, place
 from oort.recording.scan_fields import ScanFields
 from oort.recording.types import Pose
 
+_PARKED = 10.0  # [s]; odometry that stays the same for as long, bit by bit, is none: a robot at rest maps without, too
+_BASES = ("base_footprint", "base_link")
 _GAP = 1.0  # [s]; a longer silence of the odometry is worth a note
 
 
@@ -59,10 +62,13 @@ class Rig:
 
     lasers: dict[str, tuple[Pose, bool]]
     """by frame, the main one first: where each sits on the base, and whether it hangs upside down"""
-    odometry: OdometryBuffer
+    odometry: OdometryBuffer | None
+    """None: the scans have none"""
     max_extrapolation: float
     """[s]"""
     notes: tuple[str, ...]
+    without_odometry: str = ""
+    """see Recording"""
 
     @property
     def sensor_on_base(self) -> Pose:
@@ -71,7 +77,13 @@ class Rig:
 
     def place(self, stamp: float, span: tuple[float, float]) -> Placement | None:
         """The odometry of a scan; None outside the time that it covers."""
-        return place(lambda time: self.odometry.lookup(time, self.max_extrapolation), stamp, span)
+        if (odometry := self.odometry) is None:
+            return Placement((0.0, 0.0, 0.0))
+        return place(lambda time: odometry.lookup(time, self.max_extrapolation), stamp, span)
+
+
+class _NoOdometryError(InputError):
+    """There is none, and nothing that a person could mean by it."""
 
 
 def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, parameters: Parameters) -> Rig:
@@ -87,8 +99,16 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
             f"the scans on {survey.scan_topic} are in several frames: {', '.join(frames)}; mount (--mount) says where "
             "one laser sits: choose it with scan_frame (--scan-frame)"
         )
+    if not parameters.get("use_odometry"):
+        return _without_odometry(survey, frames, mount, parameters, "use_odometry is off (--no-odometry)")
     notes = []
-    odom, base, link, origin = _find_odometry(survey, sensor, odom_frame, anywhere=mount is not None)
+    try:
+        odom, base, link, origin = _find_odometry(survey, sensor, odom_frame, anywhere=mount is not None)
+    except _NoOdometryError as error:
+        return _without_odometry(survey, frames, mount, parameters, str(error))
+    if is_parked(link.by_time()):
+        reason = f"odometry {odom} -> {base or 'the base'} from {origin} never changes"
+        return _without_odometry(survey, frames, mount, parameters, reason)
     notes.append(
         f"scans on {survey.scan_topic} in frame {sensor}; odometry {odom} -> {base or 'the base'} from {origin}"
     )
@@ -136,6 +156,29 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
     return Rig(lasers, buffer, float(parameters.get("max_extrapolation")), tuple(notes))
 
 
+def is_parked(samples: NDArray[np.float64]) -> bool:
+    """Whether odometry, (n, 4) of time and pose, stays exactly the same for so long that it is none."""
+    return float(np.ptp(samples[:, 0])) >= _PARKED and bool((samples[:, 1:] == samples[0, 1:]).all())
+
+
+def _without_odometry(survey: Survey, frames: list[str], mount: Pose | None, parameters: Parameters, why: str) -> Rig:
+    """The rig of lasers alone, or on a base that only transforms tell of."""
+    notes = [f"no odometry: {why}; the scans alone say how the base moves"]
+    above = survey.tf.above(frames[0])
+    base = next((frame for frame in (parameters.get("base_frame"), *_BASES) if frame in above), frames[0])
+    if mount is not None:
+        lasers = {frames[0]: (mount, False)}
+    else:
+        lasers = {frame: to_plane(survey.tf.mount(base, frame), frame) for frame in frames}
+        notes.append(f"scans on {survey.scan_topic} in frame {frames[0]}, on the base {base}")
+    notes += [
+        f"the laser {frame} hangs upside down: its beams were turned round" for frame in lasers if lasers[frame][1]
+    ]
+    if survey.gyro is not None:
+        notes.append("the gyro is not used: it corrects odometry's turns, and there is no odometry")
+    return Rig(lasers, None, 0.0, tuple(notes), why)
+
+
 def _scan_frames(survey: Survey) -> list[str]:
     """The frames that the scans are in, in the order of their first scans. Raises InputError if there are none."""
     if survey.scan_frame is not None and survey.scan_frame not in survey.scan_frames:
@@ -169,6 +212,8 @@ def _find_odometry(survey: Survey, sensor: str, wanted: str | None, *, anywhere:
         static = f"{odom} -> {base} is a static transform, told once on /tf_static: that is no odometry"
     choices = {key: tree for key, tree in survey.odometry.items() if wanted in (None, key[1]) and tree.links}
     if not choices:
+        if wanted is None and not _gap(survey, wanted):
+            raise _NoOdometryError(static or f"there is no frame odom above {sensor}, and no odometry topic")
         raise InputError(static or _no_odometry(survey, sensor, wanted, above))
     if len(choices) > 1:
         listed = ", ".join(f"{topic} ({odom} -> {base})" for topic, odom, base in choices)

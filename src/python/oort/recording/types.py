@@ -99,6 +99,13 @@ class Recording:
     notes: tuple[str, ...]
     """sentences about what was found, taken for granted or skipped"""
     source: Callable[[], Iterator[Scan]]
+    without_odometry: str = ""
+    """why the scans have no odometry (theirs is the identity then); empty: they have"""
+
+    def require_odometry(self, what: str) -> None:
+        """Raises InputError if there is none; ``what`` needs it."""
+        if self.without_odometry:
+            raise InputError(f"{self.name}: {what} needs odometry, which is missing: {self.without_odometry}")
 
     def scans(self) -> Iterator[Scan]:
         """The scans in the order of the recording. Raises InputError if the recording cannot be read any more."""
