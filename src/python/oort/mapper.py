@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 
 from oort import _core
 from oort._core import Parameters, ScanResult
+from oort.errors import InputError
 from oort.poses import as_pose
 from oort.recording.types import LaserScan
 
@@ -24,14 +25,24 @@ class Mapper(_core.Mapper):
 
         Raises ParameterError if the parameters contradict each other, InputError if the pose is not finite.
         """
-        super().__init__(Parameters() if config is None else config, as_pose(sensor_on_base, "Mapper: sensor_on_base"))
+        parameters = Parameters() if config is None else config
+        super().__init__(parameters, as_pose(sensor_on_base, "Mapper: sensor_on_base"))
+        self._use_odometry = bool(parameters.get("use_odometry"))
 
-    def add_scan(self, scan: LaserScan, odometry: ArrayLike) -> ScanResult:
+    def add_scan(self, scan: LaserScan, odometry: ArrayLike | None = None) -> ScanResult:
         """Takes the next scan with ``odometry``, T_odom_base at its stamp; what became of it, with the pose in the map.
 
-        Raises InputError if the scan's limits or the pose are not finite, with nothing changed, and StateError after
-        set_map() without begin_session().
+        With use_odometry off it may be left out, and has no effect.
+
+        Raises InputError if the scan's limits or the pose are not finite or the pose is missing, with nothing changed,
+        and StateError after set_map() without begin_session().
         """
+        if odometry is None:
+            if self._use_odometry:
+                raise InputError(
+                    "Mapper.add_scan: no odometry was given; map without by Mapper(Config(use_odometry=False))"
+                )
+            odometry = (0.0, 0.0, 0.0)
         return self.add_ranges(*scan.readings, as_pose(odometry, "Mapper.add_scan: odometry"), scan.sweep)
 
     def add_scan_of_other(self, scan: LaserScan, odometry: ArrayLike, sensor_on_base: ArrayLike) -> None:

@@ -17,6 +17,7 @@ from oort.errors import StateError
 from oort.locations import Locations, Pose
 from oort.mapper import Mapper
 from oort.naming import METHODS, Naming, session_method
+from oort.poses import between, compose
 from oort.recording import Scan
 from oort.saved_maps import open_map
 
@@ -93,6 +94,15 @@ class Session:
     def mapper(self) -> Mapper:
         """The owner of the map."""
         return self._mapper
+
+    @property
+    def made_odometry(self) -> Pose | None:
+        """T_odom_base at the latest scan where the mapper makes it itself (use_odometry is off), else None."""
+        if self._parameters.get("use_odometry") or not self._mapper.has_pose:
+            return None
+        base = compose(self._mapper.sensor_pose, between(self._sensor_on_base, (0.0, 0.0, 0.0)))
+        x, y, theta = between(self._mapper.odom_pose, base).tolist()
+        return x, y, theta
 
     @property
     def locations(self) -> Locations:

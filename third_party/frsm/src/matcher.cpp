@@ -46,9 +46,13 @@ Lattice make_lattice(const Pose& guess, const Window& window, double cell, doubl
   return {guess, cell, theta_step, steps(window.x, cell), steps(window.y, cell), steps(window.theta, theta_step)};
 }
 
-std::optional<Candidate> find_best(const Search& search, int exhaustive_limit) {
+BoundedResult find_best(const Search& search, const MatcherParams& params) {
   const long shifts = (2L * search.lattice.nx + 1) * (2L * search.lattice.ny + 1);
-  return shifts <= exhaustive_limit ? search_all(search) : search_bounded(search);
+  const long candidates = shifts * (2L * search.lattice.nt + 1);
+  if (params.max_tiles > 0 && (shifts > params.exhaustive_limit || candidates > params.max_candidates)) {
+    return search_two_level(search, params.max_tiles);
+  }
+  return {shifts <= params.exhaustive_limit ? search_all(search) : search_bounded(search), false};
 }
 
 // Score of the best pose well apart from the best one, as a share of its score; without regard to the prior.
@@ -63,7 +67,7 @@ double second_peak(const Search& search, const Candidate& best, const MatcherPar
                      Exclusion{best, cells, cells, turns},
                      static_cast<std::uint32_t>(std::ceil(params.ambiguity_floor * best.sum)),
                      search.on_lookups};
-  const auto second = find_best(apart, params.exhaustive_limit);
+  const auto second = find_best(apart, params).best;
   return second ? static_cast<double>(second->sum) / best.sum : 0.0;
 }
 
@@ -147,6 +151,8 @@ void MatcherParams::validate() const {
         "must be above 0");
   check(min_curvature >= 0.0 && min_curvature <= 1.0, "MatcherParams.min_curvature", "must be 0 to 1");
   check(ambiguity_floor > 0.0, "MatcherParams.ambiguity_floor", "must be above 0");
+  check(max_candidates >= 1, "MatcherParams.max_candidates", "must be at least 1");
+  check(max_tiles >= 0, "MatcherParams.max_tiles", "must not be negative");
   check(exhaustive_limit >= 1, "MatcherParams.exhaustive_limit", "must be at least 1");
 }
 
@@ -175,13 +181,13 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
                       std::nullopt,
                       static_cast<std::uint32_t>(std::ceil(255.0 * params_.min_score * points.size())),
                       on_lookups};
-  const std::optional<Candidate> found = find_best(search, params_.exhaustive_limit);
-  if (!found) return give_up(Status::kLowHits);
-  const Candidate& best = *found;
+  const BoundedResult found = find_best(search, params_);
+  if (!found.best) return give_up(Status::kLowHits);
+  const Candidate& best = *found.best;
   if (best.sum == 0) return give_up(Status::kNoOverlap);
 
   Match match;
-  match.saturated = on_border(search.lattice, best);
+  match.saturated = found.is_cut_short || on_border(search.lattice, best);
   if (params_.ambiguity_floor < 1.0) match.ambiguity = second_peak(search, best, params_);
   match.pose = polish(table, points, search.objective, search.lattice.at(best.it, best.ix, best.iy),
                       {kPolishReach * cell, kPolishReach * cell, kPolishReach * params_.theta_step});

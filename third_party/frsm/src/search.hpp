@@ -83,4 +83,13 @@ std::optional<Candidate> search_all(const Search& search);
 /// The same candidate, by branch and bound: for wide windows.
 std::optional<Candidate> search_bounded(const Search& search);
 
+struct BoundedResult {
+  std::optional<Candidate> best;
+  bool is_cut_short = false;  ///< a better one may be left: there was more to visit than allowed
+};
+
+/// The same candidate in bounded work: all tiles of 8 x 8 shifts are bounded, and no more than so many of them, the
+/// most promising first, are searched.
+BoundedResult search_two_level(const Search& search, int most_tiles);
+
 }  // namespace frsm

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "blocks.hpp"
 #include "brush.hpp"
 #include "check.hpp"
 #include "pyramid.hpp"
@@ -73,6 +74,7 @@ void Table::draw(const Points& world, const std::vector<Contour>& contours, cons
   cover(static_cast<int>(std::floor(low_x)) - kernel_.radius, static_cast<int>(std::floor(low_y)) - kernel_.radius,
         static_cast<int>(std::ceil(high_x)) + kernel_.radius, static_cast<int>(std::ceil(high_y)) + kernel_.radius);
   std::atomic_store(&bounds_, std::shared_ptr<const BoundPyramid>());
+  std::atomic_store(&blocks_, std::shared_ptr<const BlockMaxima>());
   empty_ = false;
   Brush brush(kernel_, cells_.data(), x0_, y0_, width_);
   for (const Contour& contour : contours) {
@@ -128,11 +130,14 @@ void Table::clear() {
   x0_ = y0_ = width_ = height_ = 0;
   empty_ = true;
   bounds_.reset();
+  blocks_.reset();
 }
 
 std::size_t Table::bytes() const {
   const auto bounds = std::atomic_load(&bounds_);
-  return cells_.capacity() + kernel_.values.capacity() + (bounds ? bounds->bytes() : 0);
+  const auto blocks = std::atomic_load(&blocks_);
+  return cells_.capacity() + kernel_.values.capacity() + (bounds ? bounds->bytes() : 0) +
+         (blocks ? blocks->bytes() : 0);
 }
 
 TableView Table::view() const {
@@ -146,6 +151,15 @@ std::shared_ptr<const BoundPyramid> Table::bounds() const {
     std::atomic_store(&bounds_, bounds);
   }
   return bounds;
+}
+
+std::shared_ptr<const BlockMaxima> Table::blocks() const {
+  auto blocks = std::atomic_load(&blocks_);
+  if (!blocks) {
+    blocks = std::make_shared<const BlockMaxima>(view());
+    std::atomic_store(&blocks_, blocks);
+  }
+  return blocks;
 }
 
 // Grows the rectangle so that it holds some cells, with a margin.

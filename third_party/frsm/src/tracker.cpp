@@ -17,6 +17,10 @@ constexpr double kWindowSigmas = 3.0;
 constexpr double kWorthwhileHits = 0.02;  // another guess must bring this many more hits to be believed
 constexpr double kRetryWindow = 3.0;      // the last try's window, and its prior's standard deviations twice as wide
 constexpr double kRetryPrior = 2.0;
+// Wider windows cost more than a scan may: with kMaxTiles the worst scan of 360 points takes about 10 ms in all.
+constexpr double kWidestWindow = 2.0;       // [m]
+constexpr double kWidestWindowTheta = 1.0;  // [rad]
+constexpr int kMaxTiles = 1000;
 constexpr int kTellingHits = 4;  // times the fewest points that are matched
 // A view this wide turns without bias; of a narrower one this much of its edge is left out beside what is new, unless
 // too little would be left.
@@ -32,6 +36,11 @@ double bearing(const Point& p) {
 Eigen::Matrix3d diagonal(double sigma_xy, double sigma_theta) {
   const Eigen::Vector3d variances(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_theta * sigma_theta);
   return variances.asDiagonal();
+}
+
+MatcherParams bounded(MatcherParams params) {
+  params.max_tiles = kMaxTiles;
+  return params;
 }
 
 void check_motion(const Motion& motion) {
@@ -51,7 +60,9 @@ AddRule AddRule::by_hits(double hit_threshold) {
 }
 
 Tracker::Tracker(const TrackerParams& params)
-    : params_((params.validate(), params)), matcher_(params.matcher), history_(params.table, params.max_num_scans) {}
+    : params_((params.validate(), params)),
+      matcher_(bounded(params.matcher)),
+      history_(params.table, params.max_num_scans) {}
 
 void TrackerParams::validate() const {
   table.validate();
@@ -186,11 +197,13 @@ Pose Tracker::predict(double time) const {
                       bounded(motion.theta, params_.max_search_range_theta)};
 }
 
-// The limits are those of one motion: after scans that could not be matched the window also covers their motions.
+// The limits are those of one motion: after scans that could not be matched the window also covers their motions, as
+// far as bounded work does.
 Window Tracker::window(const Prior& prior, double scale) const {
   const auto half = [&](int i, double low, double high) {
     const double unmatched = kWindowSigmas * std::sqrt(drift_(i, i));
-    return scale * std::clamp(kWindowSigmas * std::sqrt(prior.covariance(i, i)), low, high + unmatched);
+    const double width = std::clamp(kWindowSigmas * std::sqrt(prior.covariance(i, i)), low, high + unmatched);
+    return std::min(scale * width, std::max(high, i < 2 ? kWidestWindow : kWidestWindowTheta));
   };
   return {half(0, params_.initial_search_range_xy, params_.max_search_range_xy),
           half(1, params_.initial_search_range_xy, params_.max_search_range_xy),

@@ -111,14 +111,17 @@ TEST(Pyramid, IsTightWhereItIsSmall) {
 
 void expect_same(const Search& search) {
   const auto all = search_all(search);
-  const auto bounded = search_bounded(search);
-  ASSERT_EQ(all.has_value(), bounded.has_value());
-  if (!all) return;
-  EXPECT_EQ(all->value, bounded->value);
-  EXPECT_EQ(all->sum, bounded->sum);
-  EXPECT_EQ(all->it, bounded->it);
-  EXPECT_EQ(all->ix, bounded->ix);
-  EXPECT_EQ(all->iy, bounded->iy);
+  const BoundedResult two_level = search_two_level(search, 1 << 20);
+  EXPECT_FALSE(two_level.is_cut_short);
+  for (const auto& bounded : {search_bounded(search), two_level.best}) {
+    ASSERT_EQ(all.has_value(), bounded.has_value());
+    if (!all) return;
+    EXPECT_EQ(all->value, bounded->value);
+    EXPECT_EQ(all->sum, bounded->sum);
+    EXPECT_EQ(all->it, bounded->it);
+    EXPECT_EQ(all->ix, bounded->ix);
+    EXPECT_EQ(all->iy, bounded->iy);
+  }
 }
 
 Prior random_prior(Random* random, const Pose& near) {
@@ -175,6 +178,20 @@ TEST(BranchAndBound, FindsWhatTryingAllFindsInRoomsAndCorridors) {
     const Pose guess = truth * Pose{random.real(-0.3, 0.3), random.real(-0.3, 0.3), random.real(-0.1, 0.1)};
     expect_same(random_search(&random, table, body, guess));
   }
+}
+
+TEST(TwoLevel, SaysWhenItsWorkWasCutShort) {
+  std::mt19937 random(6);
+  const Points body = test::scan(test::corridor(), {}, {181, test::kPi, 8.0, 0.01}, random);
+  Table table;
+  table.draw(body, extract_contours(body, ContourParams::urg()), {});
+  const Search search{table, body, {{}, 0.02, 0.01, 60, 60, 20}, Objective(1.0, body.size(), nullptr), std::nullopt};
+  const BoundedResult little = search_two_level(search, 2);
+  EXPECT_TRUE(little.is_cut_short);
+  const BoundedResult enough = search_two_level(search, 1 << 20);
+  EXPECT_FALSE(enough.is_cut_short);
+  ASSERT_TRUE(little.best && enough.best);
+  EXPECT_LE(little.best->value, enough.best->value);
 }
 
 TEST(Search, EqualScoresGoToTheNearestOfTheGuess) {

@@ -20,7 +20,7 @@ from oort.live.odometry import Odometry
 from oort.live.session import LiveSession
 from oort.poses import as_pose, compose
 from oort.recording import LaserScan, Pose, Scan
-from oort.recording.motion import SNAPSHOT, beam_span
+from oort.recording.motion import SNAPSHOT, Placement, beam_span
 from oort.session import Session
 
 _NAMES = {
@@ -63,6 +63,7 @@ class LiveMapper:
         Raises MapFileError if a path cannot be used, StateError if the pose is far from the map.
         """
         parameters = Parameters() if config is None else config
+        self._use_odometry = bool(parameters.get("use_odometry"))
         self._compensates_motion = bool(parameters.get("motion_compensation"))
         self._lock = threading.Lock()  # of the odometry
         self._odometry = Odometry(
@@ -122,7 +123,7 @@ class LiveMapper:
         span = beam_span(len(scan.ranges), time_increment)
         if span is None:
             raise InputError(f"LiveMapper.push_scan: a time_increment of {time_increment} s cannot be")
-        if scan.sweep is not None or not self._compensates_motion:
+        if scan.sweep is not None or not self._compensates_motion or not self._use_odometry:
             span = SNAPSHOT
         resolve = partial(self._resolve, scan, span, clock.monotonic())
         self._live.add_scan(resolve, partial(resolve, last_resort=True))
@@ -130,8 +131,10 @@ class LiveMapper:
     def _resolve(
         self, scan: LaserScan, span: tuple[float, float], arrived: float, last_resort: bool = False
     ) -> Scan | None:
-        with self._lock:
-            placement = self._odometry.place(scan.time, arrived, span, last_resort)
+        placement: Placement | None = Placement((0.0, 0.0, 0.0))
+        if self._use_odometry:
+            with self._lock:
+                placement = self._odometry.place(scan.time, arrived, span, last_resort)
         if placement is None:
             return None
         return Scan(
@@ -171,8 +174,12 @@ class LiveMapper:
     # ---- what can be asked for ----
 
     def pose(self) -> Pose | None:
-        """T_map_base at the newest odometry; None before the first node. Never waits for the mapping."""
-        T_map_odom, newest = self._live.snapshot.odom_pose, self._newest
+        """T_map_base at the newest odometry, without odometry at the newest scan that was mapped.
+
+        None before the first node. Never waits for the mapping.
+        """
+        snapshot = self._live.snapshot
+        T_map_odom, newest = snapshot.odom_pose, self._newest if self._use_odometry else snapshot.made_odometry
         if T_map_odom is None or newest is None:
             return None
         x, y, theta = compose(T_map_odom, newest).tolist()

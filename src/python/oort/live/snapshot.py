@@ -22,6 +22,8 @@ class Snapshot:
     num_nodes: int = 0
     odom_pose: Pose | None = None
     """T_map_odom while mapping; while paused, as it was last"""
+    made_odometry: Pose | None = None
+    """T_odom_base at the latest scan, where mapping makes it itself as no odometry is used"""
     places: Mapping[tuple[str, str], Pose] = field(default_factory=dict)
     """T_map_place by namespace and id"""
     waiting: Set[tuple[str, str]] = frozenset()
@@ -49,7 +51,8 @@ def glance(session: Session, before: Snapshot, reported_frame: Pose | None = Non
         odom_pose = None
     elif session.state is State.MAPPING and session.mapper.has_pose:
         odom_pose = odom_pose_of(session.mapper.odom_pose, reported_frame)
-    return replace(before, state=session.state, path=session.path, odom_pose=odom_pose)
+    made = session.made_odometry
+    return replace(before, state=session.state, path=session.path, odom_pose=odom_pose, made_odometry=made)
 
 
 def odom_pose_of(T_map_odom: Pose, reported_frame: Pose | None) -> Pose:  # noqa: N803

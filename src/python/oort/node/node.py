@@ -50,7 +50,7 @@ class Node(Listener):
         """Advertises, subscribes, and offers the services; mapping begins with map/start."""
         self._middleware = middleware
         self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
-        self._sensor_frame = frame(parameters, "sensor")
+        self._base_frame, self._sensor_frame = frame(parameters, "base"), frame(parameters, "sensor")
         self._last_tf = 0  # [ns]
         self._tf_lock = threading.Lock()
 
@@ -152,16 +152,20 @@ class Node(Listener):
     # ---- what goes out by itself ----
 
     def _tell_pose(self) -> None:
-        """map -> odom, dated one period ahead, so that a look-up for now finds it until the next one."""
+        """map -> odom, dated one period ahead, so that a look-up for now finds it until the next one.
+
+        And odom -> base, where no odometry is used and so nobody else tells it.
+        """
         with self._tf_lock:
-            pose = self.live.snapshot.odom_pose
-            stamp = self._middleware.now() + round(1e9 * _TF_PERIOD)
-            if pose is None or stamp == self._last_tf:
+            pose, made = self.live.snapshot.odom_pose, self.live.snapshot.made_odometry
+            now = self._middleware.now() + round(1e9 * _TF_PERIOD)
+            if pose is None or now == self._last_tf:
                 return  # where the clock stands, listeners complain of repeated data
-            self._last_tf = stamp
-            self._middleware.send_transform(
-                transform(self._map_frame, self._odom_frame, self._middleware.stamp(stamp), pose)
-            )
+            self._last_tf = now
+            stamp = self._middleware.stamp(now)
+            if made is not None:
+                self._middleware.send_transform(transform(self._odom_frame, self._base_frame, stamp, made))
+            self._middleware.send_transform(transform(self._map_frame, self._odom_frame, stamp, pose))
 
     def _tell_queue(self) -> None:
         self._queue_size.publish(Int64(data=len(self.live.inbox)))

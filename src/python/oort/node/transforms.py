@@ -55,6 +55,7 @@ class Transforms:
         self._base, self._odom, self._map = (frame(parameters, name) for name in ("base", "odom", "map"))
         self._on_odometry = on_odometry
         self._max_extrapolation = float(parameters.get("max_extrapolation"))
+        self._use_odometry = bool(parameters.get("use_odometry"))
         self._use_imu = bool(parameters.get("use_imu"))
         self._imu_axes: dict[str, Vector] = {}  # upward in the IMU's frame, as tf tells it
         self._imus: dict[str, float] = {}  # [s] time.monotonic() of the first message of each IMU's frame
@@ -105,6 +106,8 @@ class Transforms:
 
         ``arrived`` is the scan's time.monotonic(). Raises UnusableScanError if it will not come any more.
         """
+        if not self._use_odometry:
+            return Placement((0.0, 0.0, 0.0))
         with self._lock:
             way = self._tree.way_up(self._base, self._odom)
             odometry = self._odometry.get(way[-2]) if len(way) > 1 else None
@@ -119,6 +122,8 @@ class Transforms:
         with self._lock:
             if not self._tree.way_up(sensor_frame, self._base) and sensor_frame != self._base:
                 return f"no {self._base} -> {sensor_frame} (tf has {self._tree.describe()})"
+            if not self._use_odometry:
+                return "no odometry is used"
             way = self._tree.way_up(self._base, self._odom)
             if len(way) < 2:
                 return f"no {name} (tf has {self._tree.describe()})"
@@ -142,7 +147,7 @@ class Transforms:
 
     def imu_trouble(self) -> str:
         """Why an IMU that is to be used turns nothing of odometry, and what to do; empty if it does."""
-        if not self._use_imu:
+        if not (self._use_imu and self._use_odometry):
             return ""
         with self._lock:
             if self._odometry and time.monotonic() > self._imu_heard + _SILENCE:

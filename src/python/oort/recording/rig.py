@@ -212,7 +212,7 @@ def _find_odometry(survey: Survey, sensor: str, wanted: str | None, *, anywhere:
         static = f"{odom} -> {base} is a static transform, told once on /tf_static: that is no odometry"
     choices = {key: tree for key, tree in survey.odometry.items() if wanted in (None, key[1]) and tree.links}
     if not choices:
-        if wanted is None and not _gap(survey, wanted):
+        if wanted is None and (static or not (_gap(survey, wanted) or _moves(survey.tf, above))):
             raise _NoOdometryError(static or f"there is no frame odom above {sensor}, and no odometry topic")
         raise InputError(static or _no_odometry(survey, sensor, wanted, above))
     if len(choices) > 1:
@@ -220,6 +220,12 @@ def _find_odometry(survey: Survey, sensor: str, wanted: str | None, *, anywhere:
         raise InputError(f"several odometries; choose one by its frame with odom_frame (--odom-frame): {listed}")
     ((topic, odom, base), tree) = next(iter(choices.items()))
     return odom, base, tree.links[base][odom], topic
+
+
+def _moves(tree: FrameTree, above: list[str]) -> bool:
+    """Whether a frame moves that carries the laser: then there is odometry, by another name."""
+    links = (link for frame in above for link in tree.links.get(frame, {}).values())
+    return any(bool((np.ptp(link.by_time()[:, 1:], axis=0) > 0.0).any()) for link in links)
 
 
 def _named(frames: list[str], wanted: str | None) -> list[str]:

@@ -47,6 +47,11 @@ struct MatcherParams {
   double ambiguity_floor = 1.0;  ///< look for a second peak of at least this share of the best score; >= 1: do not look
   int exhaustive_limit = 2000;   ///< largest number of shifts per heading that are all tried; above: branch and bound
 
+  /// Where more shifts and headings than this are to be tried in all, tiles of them are bounded first, and so many of
+  /// the tiles are searched; 0: the work is not bounded.
+  int max_candidates = 20000;
+  int max_tiles = 0;
+
   /// Throws std::invalid_argument that names the field when a value makes no sense.
   void validate() const;
 };
@@ -64,7 +69,7 @@ struct Match {
   /// have the window's half width as standard deviation. Where the pose is the guess: the prior's, or the window's.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
   bool degenerate = false;
-  bool saturated = false;
+  bool saturated = false;  ///< on the window's border, or found in work that was cut short (max_tiles)
   /// Score of the best pose apart from this one (0.3 m or 0.3 rad away) over this score; may exceed 1 when the prior
   /// decided. 0: none above the floor, or not looked for.
   double ambiguity = 0.0;
