@@ -87,14 +87,14 @@ def test_a_frame_that_was_named_must_be_there(tmp_path: Path) -> None:
 
 def test_a_drive_is_mapped_without_odometry(tmp_path: Path) -> None:
     path = tmp_path / "home.clf"
-    drive = simulate_drive(SimulationConfig(seed=3, minutes=1.0))
+    drive = simulate_drive(3, SimulationConfig(minutes=1.0))
     write_carmen(drive, path)
     recording = open_recording(path, parameters=without())
     mapped = replay(recording, options=ReplayOptions(until=40.0, quiet=True))
     assert mapped.parameters.get("use_odometry") is False
     poses = mapped.recorder.base_poses(mapped.map)
     assert mapped.session.mapper.statistics["tracking"]["tracking"] == len(poses)
-    true = drive.T_world_base_at_scans[: len(poses)]
+    true = drive.T_map_base[: len(poses)]
     off = between(between(true[0], true), between(poses[0], poses))
     assert np.hypot(off[:, 0], off[:, 1]).max() < 0.1
     with pytest.raises(InputError, match="home: a search for where it begins needs odometry, which is missing"):

@@ -27,13 +27,10 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
     "Half width of the search around the odometry's guess; more where odometry is less certain.");
   v(p.initial_search_range_theta, "initial_search_range_theta", {0.01, "rad", {0.0, 3.15}},
     "Half width of the search in heading.");
-  v(p.max_search_range_xy, "max_search_range_xy", {0.3, "m", {0.0, 5.0}}, "Half width to which the search may grow.")
-      .documented(0.1,
-                  "Scans a metre apart are off by more: ATE of belgioioso 0.28 m instead of 0.87 m, of edmonton 0.18 m "
-                  "instead of 1.09 m.");
-  v(p.max_search_range_theta, "max_search_range_theta", {0.5, "rad", {0.0, 3.15}},
-    "Half width in heading to which the search may grow.")
-      .documented(0.1, "As max_search_range_xy.");
+  v(p.max_search_range_xy, "max_search_range_xy", {0.1, "m", {0.0, 5.0}},
+    "Half width to which the search may grow; more over a step of more than half a metre.");
+  v(p.max_search_range_theta, "max_search_range_theta", {0.1, "rad", {0.0, 3.15}},
+    "Half width in heading to which the search may grow; the same.");
   v(p.add_scan_hit_thresh, "add_scan_hit_thresh", {0.95, "fraction", {0.0, 1.0}},
     "A scan joins the local map if its inlier ratio is lower.");
   v(p.stationary_motion_model, "stationary_motion_model", false,
