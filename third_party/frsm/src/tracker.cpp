@@ -17,10 +17,11 @@ constexpr double kWindowSigmas = 3.0;
 constexpr double kWorthwhileHits = 0.02;  // another guess must bring this many more hits to be believed
 constexpr double kRetryWindow = 3.0;      // the last try's window, and its prior's standard deviations twice as wide
 constexpr double kRetryPrior = 2.0;
-// Over a step of so much the limits are wider: scans a metre apart, with odometry of a tenth of that.
-constexpr double kFarStep = 0.5;         // [m]
-constexpr double kFarWindow = 0.3;       // [m/m]
-constexpr double kFarWindowTheta = 0.5;  // [rad]
+// The limits on the window are those of a usual rate of scans, where a larger motion is a fault of odometry. Of scans
+// farther apart than this it is none, and the limits are wider.
+constexpr double kLongInterval = 0.5;     // [s]
+constexpr double kLongWindow = 0.3;       // [m]
+constexpr double kLongWindowTheta = 0.5;  // [rad]
 // Wider windows cost more than a scan may: with kMaxTiles the worst scan of 360 points takes about 10 ms in all.
 constexpr double kWidestWindow = 2.0;       // [m]
 constexpr double kWidestWindowTheta = 1.0;  // [rad]
@@ -92,6 +93,8 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
   join_pending();
   Prior expected = expect(time, odometry);
   hypothesis_ = 0;
+  after_long_ = last_time_ && time - *last_time_ > kLongInterval;
+  last_time_ = time;
   if (history_.table().empty()) return start(body, time, expected);
   Match match = try_match(body, expected, 1.0);
   for (std::size_t k = 0; k < alternatives.size(); ++k) {
@@ -204,10 +207,8 @@ Pose Tracker::predict(double time) const {
 // The limits are those of one motion: after scans that could not be matched the window also covers their motions, as
 // far as bounded work does.
 Window Tracker::window(const Prior& prior, double scale) const {
-  const double step = distance(pose_, prior.mean);
   const auto half = [&](int i, double low, double most) {
-    const double far = i < 2 ? kFarWindow * step : kFarWindowTheta;
-    const double high = step > kFarStep ? std::max(most, far) : most;
+    const double high = after_long_ ? std::max(most, i < 2 ? kLongWindow : kLongWindowTheta) : most;
     const double unmatched = kWindowSigmas * std::sqrt(drift_(i, i));
     const double width = std::clamp(kWindowSigmas * std::sqrt(prior.covariance(i, i)), low, high + unmatched);
     return std::min(scale * width, std::max(high, i < 2 ? kWidestWindow : kWidestWindowTheta));

@@ -35,7 +35,7 @@ struct TrackerParams {
   AddRule add;
   int max_num_scans = 60;                   ///< history: the local map holds the last K/2 to K scans that joined (>= 2)
   double initial_search_range_xy = 0.1;     ///< smallest half window [m]
-  double max_search_range_xy = 0.25;        ///< largest half window [m]
+  double max_search_range_xy = 0.25;        ///< largest half window [m], of scans at more than 2 Hz
   double initial_search_range_theta = 0.1;  ///< [rad]
   double max_search_range_theta = 0.25;     ///< [rad]
   bool stationary_motion_model = false;     ///< without odometry: expect no motion, rather than constant velocity
@@ -55,8 +55,8 @@ class Tracker {
  public:
   explicit Tracker(const TrackerParams& params = {});
 
-  /// Matches the next scan. `body`: its points in the body frame, in sensor order; `time` [s]: only for the constant
-  /// velocity model; `odometry`: the motion since the previous call, if known.
+  /// Matches the next scan. `body`: its points in the body frame, in sensor order; `time` [s]: for the constant
+  /// velocity model, and whether the scan before is long ago; `odometry`: the motion since the previous call, if known.
   /// If the match is usable, or saturated with at least `retry_hits`, its pose becomes the tracker's; else the expected
   /// pose does, and match.pose and match.covariance are those of the expectation. matched() tells which.
   /// The first scan after construction, reset() or a fresh start has nothing to match and returns kNoOverlap.
@@ -130,6 +130,8 @@ class Tracker {
   std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled
   Velocity velocity_;
   bool matched_ = false;
+  std::optional<double> last_time_;  // of the last scan [s]
+  bool after_long_ = false;          // whether the scan before is long ago
   std::size_t hypothesis_ = 0;
   int rejected_ = 0;  // unusable scans in a row
   long added_scans_ = 0;
