@@ -47,7 +47,7 @@ struct LocalSlamTuning {
   static constexpr double kBlindWindow = 0.3;       ///< [m]
   static constexpr double kBlindWindowTheta = 0.6;  ///< [rad]
   /// and what that prediction is worth on an edge, in directions that the match does not see. [m, rad]
-  static constexpr OdometryModel kNoOdometry{0.3, 0.1, 0.1, 0.3, 0.05, 0.05};
+  static constexpr OdometryModel kNoOdometry{1.0, 0.3, 0.2, 0.4, 0.1, 0.05};
 
   // When a fresh local map begins.
   static constexpr int kMaxRejectedNodes = 5;  ///< in a row that only odometry places
