@@ -114,7 +114,8 @@ def test_killed_at_any_moment(
         for k in range(kills):
             log, path = tmp_path / f"{k}.json", str(tmp_path / f"{k}" / "map")
             start = chance.randrange(len(course) - PART)
-            running = node(f"_events_log:={log}")
+            # With no view pruned, fewer nodes would be a loss.
+            running = node(f"_events_log:={log}", "_keep_views:=0")
             with Robot(course[start:]) as robot, Heard("/oort_slam/file_changed", String) as saves:
                 robot.wait_for_node()
                 go_on(Client(running), base, path, course, start)

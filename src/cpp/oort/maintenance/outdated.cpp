@@ -39,7 +39,7 @@ double farthest_return(const Map& map, const std::vector<std::uint64_t>& nodes) 
 
 class Outdated {
  public:
-  Outdated(const Map& map, std::vector<std::uint64_t> nodes, const GridLimits& limits, double reach,
+  Outdated(const Map& map, const std::vector<std::uint64_t>& nodes, const GridLimits& limits, double reach,
            std::uint64_t first_new)
       : map_(map), reach_(reach), now_(limits), before_(limits) {
     for (const std::uint64_t node : nodes) now_.add(beams(node));

@@ -41,7 +41,7 @@ class Rospy(Middleware):
 
     def is_running(self) -> bool:
         """False from the moment at which the node is to end."""
-        return not rospy.is_shutdown()
+        return not rospy.core.is_shutdown_requested()  # topics are closed before rospy.is_shutdown() says so
 
     def close(self) -> None:
         """Leaves the ROS graph."""
