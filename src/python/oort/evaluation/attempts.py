@@ -16,7 +16,8 @@ ACCEPTED, CONTRADICTED = "accepted", "contradicted"
 MOST = 200_000
 """attempts that are kept at most: the newest; some 30 MB"""
 
-_ON = 0.5  # a closure whose switch is below is off: closer to 0, off, than to 1
+SWITCHED_ON = 0.5
+"""A closure whose switch is below is off: closer to 0, off, than to 1."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ def judge_attempts(told: Sequence[tuple[int, int, str | None, Pose, float]], map
     attempts = []
     for query, candidate, rejection, pose, hits in told:
         switch = None if rejection is not None else switches[query, candidate]
-        accepted = CONTRADICTED if switch is not None and switch < _ON else ACCEPTED
+        accepted = CONTRADICTED if switch is not None and switch < SWITCHED_ON else ACCEPTED
         attempts.append(Attempt(query, candidate, rejection or accepted, pose, hits, switch))
     return attempts
 

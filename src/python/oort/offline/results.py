@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from oort._core import Map, Mapper, OccupancyGrid, Parameters, save_map
 from oort.diagnosis import Trouble
-from oort.evaluation.attempts import judge_attempts, write_attempts
+from oort.evaluation.attempts import SWITCHED_ON, judge_attempts, write_attempts
 from oort.evaluation.histograms import make_histograms, panels
 from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
 from oort.export.chart import write_chart
@@ -30,8 +30,6 @@ from oort.report.stopwatch import Stopwatch
 from oort.session import Session
 
 _RESOLUTION = "output_map.probability_grid.resolution"
-_SWITCHED_OFF = 0.5
-"""A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +101,7 @@ def _write_pictures(
 ) -> None:
     origin = (*grid.origin, 0.0)
     closures = _closure_ends(map_)
-    on = map_.switchable_edges["switch"] >= _SWITCHED_OFF
+    on = map_.switchable_edges["switch"] >= SWITCHED_ON
     outputs.write("map.pgm map.yaml", lambda: write_map_server(out / "map", grid.cells, grid.resolution, origin))
     outputs.write(
         "map.png",
@@ -142,7 +140,7 @@ def _report(
             "height": 0 if grid is None else grid.height,
             "resolution": drive.parameters.get(_RESOLUTION) if grid is None else grid.resolution,
             "switchable_edges": len(map_.switchable_edges["switch"]),
-            "switched_off": int((map_.switchable_edges["switch"] < _SWITCHED_OFF).sum()),
+            "switched_off": int((map_.switchable_edges["switch"] < SWITCHED_ON).sum()),
         },
         histograms,
         [trouble.to_dict() for trouble in drive.troubles],

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from oort._core import Map, OccupancyGrid
-from oort.evaluation.attempts import Attempt
+from oort.evaluation.attempts import SWITCHED_ON, Attempt
 from oort.export.map_server import grey_picture
 from oort.poses import between, wrap_angle
 from oort.report.arrays import pack
@@ -23,7 +23,6 @@ MOST_REJECTED = 3000
 _STEP = 0.005  # [m] of the points of scans
 _MOST_POINTS = 1_500_000  # of all scans together: some 6 MB
 _CHAIN_KINDS = ("laser", "odometry")
-_ON = 0.5  # a closure whose switch is below is off: closer to 0, off, than to 1
 
 
 def grid_layer(grid: OccupancyGrid) -> dict[str, Any]:
@@ -76,7 +75,7 @@ def closure_layer(map_: Map, attempts: Sequence[Attempt]) -> dict[str, Any]:
     rejected = [a for a in attempts if a.switch is None]
     shown = sorted(rejected, key=lambda a: -a.inlier_ratio)[:MOST_REJECTED]
     verdicts = ["accepted", "undone", *sorted({a.verdict for a in shown})]
-    on = edges["switch"] >= _ON
+    on = edges["switch"] >= SWITCHED_ON
     codes = [*np.where(on, 0, 1).tolist(), *(verdicts.index(a.verdict) for a in shown)]
     base = [*ends[:, 0].tolist(), *(a.candidate for a in shown)]
     moving = [*ends[:, 1].tolist(), *(a.query for a in shown)]
