@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Earlier versions of a map, kept beside it as maps of their own: BASE.previous, the latest, BASE.previous.2, ..."""
 
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -61,6 +62,12 @@ def restore(path: str, number: int) -> None:
     if any(Path(base + ending).exists() for ending in _FILES):
         keep_version(base)
     save_map(base, earlier)
+
+
+def describe(version: Version) -> str:
+    """A version in a line."""
+    when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(version.saved))
+    return f"{version.number}  kept {when}  {version.path}"
 
 
 def _path_of(base: str, number: int) -> str:

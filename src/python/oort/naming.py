@@ -16,6 +16,8 @@ METHODS = {
     "map/resume_from_paused": "resume_from_paused",
     "map/stop": "stop",
     "map/clear": "clear",
+    "map/accept": "accept",
+    "map/reject": "reject",
     "graph_loc/create": "create_location",
     "graph_loc/create_points": "create_points",
     "graph_loc/delete": "delete_location",

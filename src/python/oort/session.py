@@ -75,6 +75,7 @@ class Session:
         self._prepare = prepare
         self._state = State.NOT_MAPPING
         self._path = ""
+        self._before: Map | None = None  # what this session went on with, until it is accepted
         self._use(self._new_mapper())
         self._calls: dict[str, Callable[..., Any]] = {call: getattr(self, name) for call, name in METHODS.items()}
 
@@ -213,6 +214,7 @@ class Session:
             )
         if path:
             self._prepare("map/resume", path)
+        self._before = self.map
         carriers = self._mapper.begin_session((x, y, theta))
         self._path = path
         self._state = State.MAPPING
@@ -251,6 +253,27 @@ class Session:
             self._mapper.finish()
             self._locations.give_up_waiting()
             self._state = State.NOT_MAPPING
+        self._write(Saved.MAP)
+
+    def accept(self) -> None:
+        """Keeps what the session made of the map that it went on with, for good: reject() has nothing to go back to."""
+        self._map_before("map/accept")
+        self._before = None
+
+    def reject(self) -> None:
+        """Brings back the map that the session went on with, its places too, in memory and where the map is saved.
+
+        Possible from resume() on, also after stop(), until accept(), load(), clear() or the next resume(). Where maps
+        are kept beside a path, the rejected one is.
+        """
+        before = self._map_before("map/reject")
+        mapper = self._new_mapper()
+        mapper.set_map(before)
+        if self._path:
+            self._write(Saved.MAP)
+            self._prepare("map/reject", self._path)
+        self._use(mapper)
+        self._state = State.NOT_MAPPING
         self._write(Saved.MAP)
 
     def clear(self) -> None:
@@ -306,6 +329,15 @@ class Session:
         if self._path and self._mapper.num_nodes > 0:
             self._save(self._path, self._mapper.map(), what)
 
+    def _map_before(self, call: str) -> Map:
+        """What the session went on with. Raises StateError if that is nothing, or was accepted."""
+        if self._before is None:
+            raise StateError(
+                f"{self._naming(call)}: no map was gone on with since {self._naming('map/load')}, or it was accepted; "
+                f"{self._naming('map/clear')} drops a new map, oort history goes back to an earlier one"
+            )
+        return self._before
+
     def _is_own(self, path: str) -> bool:
         """Whether that is where the map is saved already."""
         return bool(self._path) and normalise_map_path(path) == normalise_map_path(self._path)
@@ -317,6 +349,7 @@ class Session:
 
     def _use(self, mapper: Mapper) -> None:
         self._mapper = mapper
+        self._before = None
         self._observer = Observer(self._sensor_on_base)
         self._locations = Locations(mapper, self._naming)
 

@@ -13,7 +13,7 @@ import pytest
 
 from helpers.live_rig import Recorder, drive, driven, until
 from helpers.scenes import room_scan
-from oort import MapFileError, Parameters, StateError, load_map
+from oort import InputError, MapFileError, Parameters, StateError, load_map
 from oort._core import Map, Saved
 from oort.live import LiveSession
 from oort.session import State, save
@@ -283,3 +283,53 @@ def test_a_start_that_is_refused_makes_no_folder(live: LiveSession, tmp_path: Pa
     with pytest.raises(StateError, match="map/clear first"):
         live.call("map/start", [str(tmp_path / "new" / "map")])
     assert not (tmp_path / "new").exists()
+
+
+def resumed(live: LiveSession, a: str, b: str) -> int:
+    """Maps to a, resumes to b and drives on; the nodes before that."""
+    before = mapped(live, a, 30)
+    live.call("map/load", [a])
+    live.call("graph_loc/create_points", [["rooms"], [[0.5, 0.0]], ["kitchen"]])
+    live.call("map/resume", [b, [0.0, 0.0, 0.0]])
+    live.call("graph_loc/clear", ["rooms", False])
+    driven(live, 90)
+    return before
+
+
+@pytest.mark.parametrize("stopped", [False, True])
+def test_a_rejected_session_brings_back_the_map(live: LiveSession, tmp_path: Path, stopped: bool) -> None:
+    a, b = str(tmp_path / "a"), str(tmp_path / "b")
+    before = resumed(live, a, b)
+    after = live.snapshot.num_nodes
+    assert after > before
+    if stopped:
+        live.call("map/stop")
+    live.call("map/reject")
+    assert live.snapshot.state is State.NOT_MAPPING
+    assert live.snapshot.num_nodes == len(load_map(b)) == len(load_map(a)) == before
+    assert list(live.snapshot.places) == [("rooms", "kitchen")]
+    assert len(load_map(f"{b}.previous")) == after, "what was rejected is kept"
+    with pytest.raises(StateError, match=r"map/reject: no map was gone on with"):
+        live.call("map/reject")
+
+
+def test_an_accepted_session_cannot_be_rejected(live: LiveSession, tmp_path: Path) -> None:
+    resumed(live, str(tmp_path / "a"), str(tmp_path / "b"))
+    live.call("map/accept")
+    with pytest.raises(StateError, match=r"map/reject: no map was gone on with"):
+        live.call("map/reject")
+
+
+def test_an_earlier_version_is_restored(live: LiveSession, tmp_path: Path) -> None:
+    path = str(tmp_path / "map")
+    old = mapped(live, path, 90)
+    new = mapped(live, path, 30)
+    live.call("map/load", [path])
+    live.restore(1)
+    assert live.snapshot.num_nodes == len(load_map(path)) == old
+    assert len(load_map(f"{path}.previous")) == new
+    with pytest.raises(InputError, match="no version 7"):
+        live.restore(7)
+    live.call("map/clear")
+    with pytest.raises(StateError, match="the map has no path"):
+        live.restore(1)

@@ -97,6 +97,28 @@ def test_the_map_for_a_late_joiner(peer: Peer, ask: Any) -> None:
     assert {"nodes", "chain"} <= {marker.ns for marker in markers[0].markers}
 
 
+def test_a_session_is_taken_back(peer: Peer, ask: Any, tmp_path: Path) -> None:
+    home, today = str(tmp_path / "home"), str(tmp_path / "today")
+    rover = Rover(peer, SHORT)
+    ask("map/start", "SetString", data=home)
+    rover.drive(SHORT)
+    ask("map/stop")
+    before = ask("map/num_nodes", "GetUInt").data
+    ask("map/resume", "MapResume", new_map_loc=today)
+    rover.drive(SHORT)
+    ask("map/stop")
+    ask("map/reject")
+    assert ask("map/num_nodes", "GetUInt").data == len(load_map(today)) == before
+    lines = ask("map/history", "GetStrings").data
+    assert [line.split()[0] for line in lines] == ["1"]
+    assert lines[0].endswith(f"{today}.previous")
+    ask("map/restore", "SetString", data="1")
+    assert ask("map/num_nodes", "GetUInt").data == len(load_map(today)) > before
+    reply = peer.call(f"{NODE}/map/restore", "SetString", data="two")
+    assert not reply.success
+    assert "map/history lists them" in reply.message
+
+
 def test_places(peer: Peer, ask: Any) -> None:
     rover = Rover(peer, SHORT)
     ask("map/start", "SetString", data="")

@@ -3,11 +3,10 @@
 """``oort history MAP``: lists the earlier versions of a saved map, or goes back to one."""
 
 import argparse
-import time
 from collections.abc import Sequence
 
 from oort.cli.tool import run_tool
-from oort.history import restore, versions
+from oort.history import describe, restore, versions
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -30,8 +29,7 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     found = versions(arguments.map)
     for version in found:
-        when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(version.saved))
-        print(f"{version.number}  kept {when}  {version.path}")
+        print(describe(version))
     if not found:
         print(f"{arguments.map}: no earlier versions")
 

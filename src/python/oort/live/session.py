@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, wait
 from typing import Any, TypeVar
 
+from oort import history
 from oort._core import Map, Parameters, Saved, ScanResult
 from oort.diagnosis import Trouble
 from oort.errors import StateError
@@ -27,10 +28,11 @@ from oort.recording import Scan
 from oort.session import Session, State
 
 _START, _RESUME, _STOP, _LOAD, _CLEAR = "map/start", "map/resume", "map/stop", "map/load", "map/clear"
+_REJECT = "map/reject"
 _DOCKED, _REDRAW, _CREATE = "map/notify_docked", "map/republish_maps", "graph_loc/create"
 _WORK = "(work)"  # not a call of Session, and in no log
-_CHANGE_MAP = (_LOAD, _CLEAR, _DOCKED, _STOP)
-_SHOW_MAP = (_LOAD, _RESUME, _STOP, _REDRAW)
+_CHANGE_MAP = (_LOAD, _CLEAR, _REJECT, _DOCKED, _STOP)
+_SHOW_MAP = (_LOAD, _RESUME, _REJECT, _STOP, _REDRAW)
 
 _BACKWARDS = 1.0  # [s]; a scan that is older than the last one by more says that the clock was set back
 _LOOK_EVERY = 100  # scans, between looks for what is wrong with the setup
@@ -127,6 +129,24 @@ class LiveSession:
         """
         result: _Result = self.call(_WORK, [work])
         return result
+
+    def restore(self, number: int) -> None:
+        """Makes an earlier version of the map (oort.history) the map again, and loads it.
+
+        Raises StateError while a map is being made or where none is saved, InputError if there is no such version,
+        MapFileError if it cannot be read or written.
+        """
+
+        def go_back(session: Session) -> str:
+            if session.state is not State.NOT_MAPPING:
+                raise StateError(f"map/restore: the state is {session.state.value}; call {self._naming(_STOP)} first")
+            if not session.path:
+                raise StateError(f"map/restore: the map has no path; call {self._naming(_LOAD)} first")
+            self.keeper.settle(session)
+            history.restore(session.path, number)
+            return session.path
+
+        self.call(_LOAD, [self.run(go_back)])
 
     def redraw(self) -> None:
         """Shows the listener the map again. Raises StateError if there is none."""
@@ -261,7 +281,7 @@ class LiveSession:
 
     def _follow_up(self, name: str, result: Any, before: Snapshot) -> None:
         """What a call means beyond the session itself."""
-        if name in (_LOAD, _CLEAR):
+        if name in (_LOAD, _CLEAR, _REJECT):
             self.keeper.forget()
             self.figures.forget()
             self.troubles = ()

@@ -5,7 +5,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from oort.errors import OortError
+from oort.errors import InputError, OortError
+from oort.history import describe, versions
 from oort.live import LiveSession
 from oort.node.messages import place_grid, pose_stamped
 from oort.node.middleware import Middleware
@@ -31,6 +32,8 @@ class Services:
         self._offer("map/has_map", "GetBool", lambda _: {"data": live.has_map})
         self._offer("map/num_nodes", "GetUInt", lambda _: {"data": live.snapshot.num_nodes})
         self._offer("map/map", "GetMap", self._map)
+        self._offer("map/history", "GetStrings", self._history)
+        self._offer("map/restore", "SetString", self._restore)
         self._offer("graph_loc/create", "LocCreate", self._create)
         self._offer("graph_loc/create_points", "LocCreatePoints", self._create_points)
         self._offer("graph_loc/is_ready", "GetBool", lambda _: {"data": live.places.is_ready})
@@ -40,7 +43,7 @@ class Services:
         self._offer("graph_loc/locate", "LocLocate", self._locate)
         self._offer("graph_loc/clear", "LocNamespace", self._clear)
         # map/stop comes last: who waits for it finds all the others.
-        for name in ("notify_docked", "pause", "resume_from_paused", "clear", "stop"):
+        for name in ("notify_docked", "pause", "resume_from_paused", "accept", "reject", "clear", "stop"):
             self._offer(f"map/{name}", "Empty", self._empty_call(f"map/{name}"))
 
     def _offer(self, name: str, kind: str, handle: _Handle) -> None:
@@ -78,6 +81,15 @@ class Services:
         drawing = self._live.gallery.latest(self._live.snapshot.revision)
         message = self._middleware.grid(drawing.grid)
         return {"map": place_grid(message, drawing.grid, self._map_frame, self._stamp())}
+
+    def _history(self, _: Any) -> dict[str, Any]:
+        path = self._live.snapshot.path
+        return {"data": [describe(version) for version in versions(path)] if path else []}
+
+    def _restore(self, request: Any) -> None:
+        if not request.data.isdecimal():
+            raise InputError(f"{request.data!r} is no version's number; map/history lists them")
+        self._live.restore(int(request.data))
 
     def _create(self, request: Any) -> None:
         self._live.places.create(request.nspace, request.id)

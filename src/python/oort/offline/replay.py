@@ -52,7 +52,7 @@ class _Caller:
         except OortError as error:
             raise type(error)(f"event {number} ({event.call} at {event.t}): {error}") from error
         self.session.save_to("")
-        if event.call in ("map/clear", "map/load"):
+        if event.call in ("map/clear", "map/load", "map/reject"):
             self.recorder.forget_nodes()
         if before is not None:
             self.recorder.renumber(told, before, self.session.map.node_poses)
