@@ -118,10 +118,25 @@ def test_two_maps_become_one(maps: list[Mapped], merged: tuple[str, str]) -> Non
     assert "closures across" in told
     assert "place dock/dock: the first map's is kept" in told
     map_ = load_map(path)
-    assert len(map_) == len(maps[0].map) + len(maps[1].map)
     assert [(space, id) for space, id, *_ in map_.locations] == [("dock", "dock")]
-    of_first, of_second, of_both = merged_errors(maps[0], maps[1], map_)
+    whole = merge_maps(maps[0].map, maps[1].map, Parameters()).map
+    of_first, of_second, of_both = merged_errors(maps[0], maps[1], whole)
     assert of_both < max(of_first, of_second) + 0.005
+
+
+def test_what_both_maps_show_often_is_left_out(maps: list[Mapped], tmp_path: Path) -> None:
+    sizes = []
+    for views in (0, 3, 1):
+        parameters = Parameters()
+        parameters.set("keep_views", views)
+        path = str(tmp_path / f"views{views}")
+        told = list(merge(maps[0].path, maps[1].path, path, parameters))
+        map_ = load_map(path)
+        assert any(line.startswith("left out") for line in told) == (views > 0)
+        assert [(space, id) for space, id, *_ in map_.locations] == [("dock", "dock")]
+        sizes.append(len(map_))
+    assert sizes[0] == len(maps[0].map) + len(maps[1].map)
+    assert sizes[2] < sizes[1] < 0.8 * sizes[0]
 
 
 def test_the_command_does_the_same_to_the_byte(

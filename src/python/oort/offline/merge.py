@@ -13,6 +13,7 @@ from oort._core import (
     Parameters,
     merge_maps,
     normalise_map_path,
+    prune_map,
     save_map,
 )
 from oort.errors import InputError
@@ -56,13 +57,21 @@ def merge(
     yield "looking for where the second map lies on the first, and for closures across"
     merged = merge_maps(a, b, parameters, at)
     map_ = merged.map
-    save_map(target, map_)
+    pruned = _pruned(map_, int(parameters.get("keep_views")))
+    save_map(target, pruned)
     yield from _told(merged)
-    yield f"{target}: {len(map_)} nodes"
+    if len(pruned) < len(map_):
+        yield f"left out {len(map_) - len(pruned)} of {len(map_)} nodes that show what others do (keep_views)"
+    yield f"{target}: {len(pruned)} nodes"
     (grid, _), notes = draw_map(map_, parameters)
     yield from notes
     if _draw(f"{paths[2]}.png", merged, map_, grid):
         yield f"wrote {paths[2]}.png"
+
+
+def _pruned(map_: Map, views: int) -> Map:
+    """What is saved: a map of many drives stays as large as the home."""
+    return prune_map(map_, views, always=False) if views > 0 else map_
 
 
 def _told(merged: Merged) -> list[str]:

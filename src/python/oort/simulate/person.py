@@ -35,7 +35,7 @@ def simulate_person(
     while now < len(robot):
         for _ in range(TRIES):
             start, goal = rng.choice(number_of_places, 2, replace=False).tolist()
-            walk = _walk(path(start, goal), float(rng.uniform(*PACE)) * period)
+            walk = walk_along(path(start, goal), float(rng.uniform(*PACE)) * period)
             if now + len(walk) <= len(robot) and _crosses(walk.mean(axis=1), robot[now : now + len(walk)]):
                 legs[now : now + len(walk)] = walk
                 now += len(walk)
@@ -44,7 +44,7 @@ def simulate_person(
     return legs
 
 
-def _walk(path: Array, pace: float) -> Array:
+def walk_along(path: Array, pace: float) -> Array:
     """Legs (m, 2, 2) at each moment of a walk along ``path`` that gets ahead by ``pace`` metres a moment."""
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     walked = np.arange(0.0, way[-1], pace)
