@@ -57,6 +57,19 @@ class Bag:
         self.messages.append((time, topic, "sensor_msgs/msg/LaserScan", content))
         return self
 
+    def echoes(
+        self, time: float, topic: str = "/scan", beams: Sequence[Sequence[float]] = ((1.0,), (2.0, 4.0))
+    ) -> "Bag":
+        """A scan with several echoes of each beam."""
+        content = {
+            "header": {"time": time, "frame": "laser"},
+            "angles": (-0.5, 0.5, 0.25),
+            "echoes": beams,
+            "time_increment": 0.0,
+        }
+        self.messages.append((time, topic, "sensor_msgs/msg/MultiEchoLaserScan", content))
+        return self
+
     def tf(
         self,
         time: float,
@@ -126,8 +139,10 @@ def _message(t: Any, kind: str, content: dict[str, Any], is1: bool) -> Any:
     sec = math.floor(time)
     stamp = t["builtin_interfaces/msg/Time"](sec=sec, nanosec=round((time - sec) * 1e9))
     header = t["std_msgs/msg/Header"](stamp=stamp, frame_id=frame, **({"seq": 0} if is1 else {}))
-    if kind == "sensor_msgs/msg/LaserScan":
+    if kind in ("sensor_msgs/msg/LaserScan", "sensor_msgs/msg/MultiEchoLaserScan"):
         first, last, step = content["angles"]
+        echo = t["sensor_msgs/msg/LaserEcho"]
+        several = [echo(echoes=np.array(beam, dtype=np.float32)) for beam in content.get("echoes", [])]
         return t[kind](
             header=header,
             angle_min=first,
@@ -137,8 +152,8 @@ def _message(t: Any, kind: str, content: dict[str, Any], is1: bool) -> Any:
             scan_time=0.1,
             range_min=0.1,
             range_max=5.5,
-            ranges=content["ranges"],
-            intensities=np.zeros(0, dtype=np.float32),
+            ranges=several or content["ranges"],
+            intensities=[] if several else np.zeros(0, dtype=np.float32),
         )
     if kind == "sensor_msgs/msg/Imu":
         vector = t["geometry_msgs/msg/Vector3"]

@@ -59,6 +59,15 @@ def test_ros1(tmp_path: Path) -> None:
     check_home_robot(recording)
 
 
+def test_of_several_echoes_the_first_counts(tmp_path: Path) -> None:
+    bag = drive(Bag().tf(0.0, "base", "laser", topic="/tf_static"))
+    for time in (10.1, 10.2):
+        bag.echoes(time, beams=[[1.0, 2.0], [], [3.0]])
+    scans = list(open_recording(bag.ros1(tmp_path / "echoes.bag")).scans())
+    assert [scan.time for scan in scans] == [10.1, 10.2]
+    assert scans[1].ranges.tolist() == [1.0, math.inf, 3.0]
+
+
 @pytest.mark.parametrize("storage", STORAGES)
 def test_ros2_directory_and_bare_file(tmp_path: Path, storage: str) -> None:
     path = home_robot().ros2(tmp_path / "home", STORAGES[storage])

@@ -3,10 +3,13 @@
 """Reads ROS 1 and ROS 2 bags: laser scans, with odometry from tf or nav_msgs/Odometry."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rosbags.highlevel import AnyReader
+from rosbags.interfaces import Connection
 
 from oort._core import Parameters
 from oort.errors import InputError
@@ -21,13 +24,10 @@ from oort.recording.scan_fields import Correction, ScanFields, angle_increment
 from oort.recording.types import Pose, Recording, Scan
 
 _SCAN = "sensor_msgs/msg/LaserScan"
+_ECHOES = "sensor_msgs/msg/MultiEchoLaserScan"
 _ODOMETRY = "nav_msgs/msg/Odometry"
 _IMU = "sensor_msgs/msg/Imu"
-_LIKE_SCANS = {
-    "sensor_msgs/msg/MultiEchoLaserScan": "; of a MultiEchoLaserScan ROS's laser_proc makes a LaserScan: record that",
-    "sensor_msgs/msg/PointCloud2": "; of a PointCloud2 ROS's pointcloud_to_laserscan makes a LaserScan: record that",
-}
-"""Messages that hold what a LaserScan could, and what to do with them."""
+_CLOUD = "sensor_msgs/msg/PointCloud2"
 _TF = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 
 
@@ -52,12 +52,14 @@ def read_bag(
     with container.opened() as reader:
         wanted: Sequence[str | None] = scan_topics or [None]
         topics = [
-            _choose(path, reader, _SCAN, topic, "laser scans", "scan_topic (--scan-topic, once for each laser)")
+            _choose(
+                path, reader, (_SCAN, _ECHOES), topic, "laser scans", "scan_topic (--scan-topic, once for each laser)"
+            )
             for topic in wanted
         ]
         imu = ""
         if imu_topic is not None or parameters.get("use_imu"):
-            imu = _choose(path, reader, _IMU, imu_topic, "IMU messages", "imu_topic (--imu-topic)")
+            imu = _choose(path, reader, (_IMU,), imu_topic, "IMU messages", "imu_topic (--imu-topic)")
         fields = {topic: ScanFields(topic) for topic in topics}
         survey = Survey(fields, scan_frame, compensates=bool(parameters.get("motion_compensation")))
         survey.gyro = GyroRecord(imu) if imu else None
@@ -84,9 +86,9 @@ def read_bag(
     )
 
 
-def _choose(path: Path, reader: AnyReader, kind: str, wanted: str | None, what: str, option: str) -> str:
-    """The topic with messages of a kind. Raises InputError if it is missing or there are several."""
-    topics = sorted({connection.topic for connection in reader.connections if connection.msgtype == kind})
+def _choose(path: Path, reader: AnyReader, kinds: tuple[str, ...], wanted: str | None, what: str, option: str) -> str:
+    """The topic with messages of one of these kinds. Raises InputError if it is missing or there are several."""
+    topics = sorted({connection.topic for connection in reader.connections if connection.msgtype in kinds})
     if wanted is not None:
         for topic in topics:
             if topic.strip("/") == wanted.strip("/"):
@@ -95,10 +97,13 @@ def _choose(path: Path, reader: AnyReader, kind: str, wanted: str | None, what: 
         raise InputError(f"{path}: no {what} on {wanted}; {known}")
     if not topics:
         types = {connection.msgtype for connection in reader.connections}
-        advice = "; use_imu asks for one: set use_imu to false, or record an IMU" if kind == _IMU else ""
-        advice += "".join(what for told, what in _LIKE_SCANS.items() if kind == _SCAN and told in types)
+        advice = "; use_imu asks for one: set use_imu to false, or record an IMU" if _IMU in kinds else ""
+        if _SCAN in kinds and _CLOUD in types:
+            advice = "; of a PointCloud2 ROS's pointcloud_to_laserscan makes a LaserScan: record that"
         others = sorted({f"{connection.topic} ({connection.msgtype})" for connection in reader.connections})
-        raise InputError(f"{path}: no topic of type {kind}; the bag has: {', '.join(others[:20]) or 'nothing'}{advice}")
+        raise InputError(
+            f"{path}: no topic of type {kinds[0]}; the bag has: {', '.join(others[:20]) or 'nothing'}{advice}"
+        )
     if len(topics) > 1:
         raise InputError(f"{path}: several topics with {what}; choose one with {option}: {', '.join(topics)}")
     return topics[0]
@@ -111,7 +116,7 @@ def _read(reader: AnyReader, survey: Survey) -> None:
     count = 0
     for connection, _, raw in reader.messages(wanted):
         count += 1
-        message: Any = reader.deserialize(raw, connection.msgtype)
+        message = _read_message(reader, connection, raw)
         if connection.topic in survey.fields:
             _note_scan(survey, connection.topic, message)
         elif survey.gyro is not None and connection.topic == survey.gyro.topic:
@@ -129,6 +134,15 @@ def _read(reader: AnyReader, survey: Survey) -> None:
     expected = sum(connection.msgcount for connection in wanted)
     if count < expected:
         raise InputError(f"{reader.paths[0]}: holds {count} of the {expected} messages that it lists; copy it again")
+
+
+def _read_message(reader: AnyReader, connection: Connection, raw: bytes) -> Any:
+    """A message; one with several echoes of each beam as the LaserScan of its first ones."""
+    message: Any = reader.deserialize(raw, connection.msgtype)
+    if connection.msgtype != _ECHOES:
+        return message
+    first = np.array([beam.echoes[0] if len(beam.echoes) else np.inf for beam in message.ranges], dtype=np.float32)
+    return replace(message, ranges=first)
 
 
 def _note_scan(survey: Survey, topic: str, message: Any) -> None:
@@ -193,7 +207,7 @@ def _scans(
     with container.opened() as reader:
         wanted = [connection for connection in reader.connections if connection.topic in survey.fields]
         for connection, _, raw in reader.messages(wanted):
-            message: Any = reader.deserialize(raw, connection.msgtype)
+            message = _read_message(reader, connection, raw)
             frame = _frame(message.header.frame_id)
             if not len(message.ranges) or not survey.is_wanted(frame):
                 continue
