@@ -3,10 +3,12 @@
 """What the tests share: where the real data is, one simulated drive, and a live session."""
 
 import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 
 from helpers.live_rig import Recorder
 from oort import Parameters
@@ -45,3 +47,14 @@ def live(recorder: Recorder) -> Iterator[LiveSession]:
     session = LiveSession(Parameters(), recorder)
     yield session
     session.close()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """A real browser without a window."""
+    chromium = shutil.which("chromium")
+    assert chromium, "chromium is missing: scripts/setup.sh --test installs it"
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        yield opened
+        opened.close()

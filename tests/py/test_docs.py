@@ -53,6 +53,7 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         "merge",
         "batch",
         "compare",
+        "view",
         "export",
         "parameters table",
     ],

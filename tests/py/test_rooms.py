@@ -34,6 +34,7 @@ ORDER = [
     "image_maps",
     "evaluation",
     "report",
+    "view",
     "offline",
     "oort",  # what `import oort` offers
     "node",

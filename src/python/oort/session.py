@@ -97,6 +97,11 @@ class Session:
         return self._mapper
 
     @property
+    def sensor_on_base(self) -> Pose:
+        """T_base_sensor."""
+        return self._sensor_on_base
+
+    @property
     def made_odometry(self) -> Pose | None:
         """T_odom_base at the latest scan where the mapper makes it itself (use_odometry is off), else None."""
         if self._parameters.get("use_odometry") or not self._mapper.has_pose:

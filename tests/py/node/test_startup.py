@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the node is asked to run: its name, remappings, frames and parameters, and what it says if it cannot."""
 
+import json
+import socket
+import urllib.request
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -18,7 +21,7 @@ from node.conftest import NodeFactory
 from node.robot import SHORT, Localiser, Robot
 from node.running import Core
 from oort import ParameterError, Parameters
-from oort.node.settings import Settings, read_settings
+from oort.node.settings import Settings, ViewSettings, read_settings
 from oort.session import Session
 
 pytestmark = pytest.mark.usefixtures("rospy")
@@ -125,6 +128,17 @@ def test_load_and_resume(node: NodeFactory, saved_map: str) -> None:
     assert "left out" not in client.node.output
 
 
+def test_the_node_shows_its_view(node: NodeFactory, saved_map: str) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    client = Client(node(f"_load:={saved_map}", f"_view_port:={port}"))
+    until(lambda: client.call("map/has_map"), "the map")
+    assert f"/oort_slam is shown at http://127.0.0.1:{port}/" in client.node.output
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/map", timeout=10.0) as response:
+        assert json.load(response)["grid"]["resolution"] == pytest.approx(0.05)
+
+
 # ---- what cannot be ----
 
 
@@ -166,6 +180,21 @@ def test_settings(parameter: Callable[[str, Any], None]) -> None:
     assert (settings.own["load"], settings.own["events_log"]) == ("/maps/7", "")
     assert settings.parameters.get("linear_update") == 0.5
     assert settings.parameters.get("output_map.robot_radius") == 1.0
+    assert settings.view is None
+
+
+def test_the_view_is_asked_for(parameter: Callable[[str, Any], None]) -> None:
+    parameter("view_port", 8765)
+    assert settings_of_this_process().view == ViewSettings(8765, "127.0.0.1", False)
+    parameter("view_control", True)
+    parameter("view_address", "0.0.0.0")
+    assert settings_of_this_process().view == ViewSettings(8765, "0.0.0.0", True)
+
+
+def test_a_viewer_of_the_original_is_missed(parameter: Callable[[str, Any], None]) -> None:
+    parameter("incremental_graph_builder/frsm_matcher/debug", True)
+    with pytest.warns(UserWarning, match=r"frsm_matcher\.debug: the original's viewer is not there"):
+        settings_of_this_process()
 
 
 @pytest.mark.parametrize(
@@ -177,6 +206,9 @@ def test_settings(parameter: Callable[[str, Any], None]) -> None:
         ("output_map", 3, "output_map"),
         ("params", "/nowhere/params.json", "/nowhere/params.json"),
         ("load", 7, "~load must be a text, such as a path, not 7"),
+        ("view_port", 70000, "~view_port must be a port, 1 to 65535, or 0 for no view, not 70000"),
+        ("view_port", "0.0.0.0:8765", "~view_port must be a port"),
+        ("view_control", "yes", "~view_control true or false"),
         ("events_log", {"a": 1}, "~events_log must be a text, such as a path"),
     ],
 )

@@ -149,6 +149,11 @@ def test_the_last_of_two_sections_counts(tmp_path: Path) -> None:
     assert parameters.get("output_map.robot_radius") == Parameters().get("output_map.robot_radius")
 
 
+def test_a_viewer_of_the_original_is_missed(tmp_path: Path) -> None:
+    with pytest.warns(UserWarning, match=r"frsm_matcher\.debug: the original's viewer is not there.*oort view"):
+        read(tmp_path, '{"incremental_graph_builder": {"frsm_matcher": {"debug": true}}}')
+
+
 # ---- refusals ----
 
 

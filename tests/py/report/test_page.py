@@ -3,12 +3,11 @@
 """report.html and compare.html in a real browser."""
 
 import json
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
 from oort.cli.compare import main as compare
 from oort.cli.replay import main as replay
@@ -32,16 +31,6 @@ def run(drive: Drive, tmp_path_factory: pytest.TempPathFactory) -> Path:
     args = [str(folder / "home.clf"), "--events", str(folder / "events.json"), "--until", "60", "--quiet"]
     assert replay([*args, "--out", str(folder / "run")]) == 0
     return folder / "run"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    chromium = shutil.which("chromium")
-    assert chromium, "chromium is missing: scripts/setup.sh --test installs it"
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        yield opened
-        opened.close()
 
 
 @pytest.fixture

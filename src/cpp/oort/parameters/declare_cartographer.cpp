@@ -99,7 +99,7 @@ void declare_lenient_match_filter(const Section& v, MatchFilterParameters& p) {
 }  // namespace
 
 void declare_cartographer_matcher(const Section& v, CartographerMatcherParameters& p) {
-  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").no_effect();
+  v(p.debug, "debug", false, "The original's viewer, which is not there: see oort view.").no_effect();
   v(p.debug_viewer_scale, "debug_viewer_scale", {4, "", {1, 100}}, "Screen pixels per cell of the viewer.").no_effect();
   v(p.history_length, "history_length", {60, "scans", {2, 10000}},
     "Latest scans that make the matcher's local map: the map holds between half as many and as many.")
@@ -136,7 +136,7 @@ void declare_cartographer_matcher(const Section& v, CartographerMatcherParameter
 }
 
 void declare_branch_and_bound_matcher(const Section& v, BranchAndBoundMatcherParameters& p) {
-  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").no_effect();
+  v(p.debug, "debug", false, "The original's viewer, which is not there: see oort view.").no_effect();
   v(p.debug_draw_original_cloud, "debug_draw_original_cloud", false,
     "Whether the viewer draws the cloud unmatched too.")
       .no_effect();

@@ -102,7 +102,7 @@ void declare_match_filtering(const Section& v, MatchFilteringParameters& p) {
 }
 
 void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {
-  v(p.debug, "debug", false, "Whether the matcher's debug viewer is shown (needs a display).").no_effect();
+  v(p.debug, "debug", false, "The original's viewer, which is not there: see oort view.").no_effect();
   declare_debug_viewer(v.section("debug_viewer", ParameterStatus::kNoEffect), p.debug_viewer);
   declare_search(v, p);
   v(p.scanmatch_cov_scale, "scanmatch_cov_scale", {0.35, "", {0.001, 1e6}},

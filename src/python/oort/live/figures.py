@@ -8,6 +8,7 @@ from collections import Counter
 
 from oort._core import ScanResult
 from oort.live.window import Rate, Window
+from oort.recording import Scan
 from oort.session import State
 
 _QUIET = 10.0  # [s] between two words on one reason
@@ -67,6 +68,8 @@ class Figures:
         self.delays = Window()
         """[ms] from a scan's arrival until it is mapped and told"""
         self.last_result: ScanResult | None = None
+        self.last_scan: Scan | None = None
+        """of the main laser"""
         self.last_stamp = ""
         """of its scan, exact: see Scan"""
         self._arrivals = Rate()
@@ -78,11 +81,11 @@ class Figures:
         self._last_arrival = time.monotonic()
         self._arrivals.add(self._last_arrival)
 
-    def mapped(self, result: ScanResult | None, seconds: float) -> None:
+    def mapped(self, result: ScanResult | None, seconds: float, scan: Scan | None = None) -> None:
         """A scan was mapped, which took so long [s]."""
         self.scans_mapped += 1
         self.milliseconds.add(1e3 * seconds)
-        self.last_result = result
+        self.last_result, self.last_scan = result, scan
 
     def forget(self) -> None:
         """The map that the last scans were mapped into is gone."""

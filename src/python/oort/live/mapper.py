@@ -195,6 +195,11 @@ class LiveMapper:
         """How well the robot's place is known: "tracking", "uncertain", "lost", or "idle" where no scan tells."""
         return self._live.figures.tracking(self._live.snapshot.state).value
 
+    @property
+    def session(self) -> LiveSession:
+        """The session behind, for what watches it, such as oort.view.Viewer."""
+        return self._live
+
     def locate(self, name_space: str, id: str) -> Pose:
         """Where a place is now on the map. Raises StateError if it is not known, or not yet."""
         return self._live.places.locate(name_space, id)

@@ -62,7 +62,8 @@ class LiveSession:
         ``naming`` is how messages name the calls; ``draws``: whether the map is drawn when it changes.
         """
         self._naming = naming
-        self._draws = draws
+        self.draws = draws
+        """whether the map is drawn when it changes"""
         self._listener = guarded(listener)
         self.inbox = Inbox()
         self.figures = Figures()
@@ -92,6 +93,11 @@ class LiveSession:
     def snapshot(self) -> Snapshot:
         """The session between two events."""
         return self._snapshot
+
+    @property
+    def sensor_on_base(self) -> Pose:
+        """T_base_sensor."""
+        return self._mount or self._session.sensor_on_base
 
     @property
     def has_map(self) -> bool:
@@ -179,7 +185,7 @@ class LiveSession:
             elif item is not None:
                 self._make(item)
             self.keeper.tick(self._session)
-            if self._draws:
+            if self.draws:
                 self.gallery.tick(self._snapshot, lambda: self._session.map)
             if self._closing:
                 deadline = -math.inf if item is None else min(deadline, time.monotonic() + _CLOSING)
@@ -199,7 +205,7 @@ class LiveSession:
             return
         if item.scan.mount is not None:  # it joins the main laser's next
             return
-        self.figures.mapped(result, time.monotonic() - started)
+        self.figures.mapped(result, time.monotonic() - started, item.scan)
         self._listener.scan_taken(self._snapshot)
         self._look_for_troubles(item.scan)
         self.figures.delays.add(1e3 * (time.monotonic() - item.arrived))
@@ -270,7 +276,7 @@ class LiveSession:
         self._follow_up(name, result, before)
         self._listener.call_made(self._snapshot)
         drawing = None
-        if self._draws and name in _SHOW_MAP and self._snapshot.num_nodes > 0:
+        if self.draws and name in _SHOW_MAP and self._snapshot.num_nodes > 0:
             drawing = self.gallery.draw(self._snapshot.revision, self._session.map)
         return Answer(result, saves, drawing)
 

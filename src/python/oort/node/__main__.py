@@ -18,6 +18,8 @@ def _begin(middleware: Middleware) -> Closable:
     events, load = settings.own["events_log"], settings.own["load"]
     node = Node(middleware, settings.parameters, EventLog(events) if events else None, settings.limits)
     try:
+        if settings.view is not None:
+            node.show_view(settings.view)
         if load:
             node.live.call("map/load", [load])
     except BaseException:

@@ -28,9 +28,11 @@ from oort.node.messages import place_grid, transform
 from oort.node.middleware import Middleware, Quality
 from oort.node.running import repeat
 from oort.node.services import Services
+from oort.node.settings import ViewSettings
 from oort.node.transforms import Transforms, frame
 from oort.recording import Pose
 from oort.recording.limits import NO_LIMITS, ScanLimits
+from oort.view import Viewer
 
 _TF_PERIOD = 0.05  # [s]
 _QUEUE_PERIOD = 0.1  # [s]
@@ -51,6 +53,7 @@ class Node(Listener):
         self._middleware = middleware
         self._map_frame, self._odom_frame = frame(parameters, "map"), frame(parameters, "odom")
         self._base_frame, self._sensor_frame = frame(parameters, "base"), frame(parameters, "sensor")
+        self._view: Viewer | None = None
         self._last_tf = 0  # [ns]
         self._tf_lock = threading.Lock()
 
@@ -85,8 +88,18 @@ class Node(Listener):
         ):
             threading.Thread(target=repeat, args=(middleware.is_running, period, work), daemon=True).start()
 
+    def show_view(self, settings: ViewSettings) -> None:
+        """Serves the live view until the node ends. Raises OortError if it cannot be served."""
+        name = self._middleware.name
+        self._view = Viewer(
+            self.live, title=name, address=settings.address, port=settings.port, control=settings.control
+        )
+        log.info("%s is shown at %s", name, self._view.url)
+
     def close(self) -> None:
         """Saves the map."""
+        if self._view is not None:
+            self._view.close()
         self._scans.close()
         self.live.close()
 

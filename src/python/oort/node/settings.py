@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes' ROS parameters: a few of their own, and any parameter of params.json by its path."""
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,10 +11,20 @@ from oort._core import Parameters, unknown_parameter
 from oort.errors import ParameterError
 from oort.node.middleware import Middleware
 from oort.parameters import read_parameters
-from oort.parameters.reader import set_parameter
+from oort.parameters.reader import missing_viewers, set_parameter
 from oort.recording.limits import ScanLimits
 
 _LIMITS = ("min_range", "max_range", "mask")
+_VIEW = ("view_port", "view_address", "view_control")
+
+
+@dataclass(frozen=True)
+class ViewSettings:
+    """The live view, where one was asked for."""
+
+    port: int
+    address: str
+    control: bool
 
 
 @dataclass(frozen=True)
@@ -25,6 +36,7 @@ class Settings:
     """the texts of the node's own parameters, empty where not given"""
     limits: ScanLimits
     """which readings of the laser count"""
+    view: ViewSettings | None
 
 
 def read_settings(middleware: Middleware, names: Sequence[str]) -> Settings:
@@ -35,6 +47,7 @@ def read_settings(middleware: Middleware, names: Sequence[str]) -> Settings:
     given = middleware.parameters()
     own = {name: given.pop(name, "") for name in ["params", *names]}
     limits = _read_limits(middleware, {name: given.pop(name) for name in _LIMITS if name in given})
+    view = _read_view(middleware, {name: given.pop(name) for name in _VIEW if name in given})
     for name, value in own.items():
         inner = {path: given[path] for path in given if path.startswith(f"{name}.")}
         if inner or not isinstance(value, str):
@@ -51,8 +64,11 @@ def read_settings(middleware: Middleware, names: Sequence[str]) -> Settings:
             name = middleware.resolve(middleware.parameter_name(path))
             raise ParameterError(f"ROS parameter {name}: {error}") from error
     parameters.check()
+    for note in missing_viewers(parameters):
+        if note.partition(":")[0] in given:
+            warnings.warn(note, stacklevel=2)
     middleware.show_parameters({**own, **parameters.to_dict()})
-    return Settings(parameters, own, limits)
+    return Settings(parameters, own, limits, view)
 
 
 def _read_limits(middleware: Middleware, given: dict[str, Any]) -> ScanLimits:
@@ -67,6 +83,21 @@ def _read_limits(middleware: Middleware, given: dict[str, Any]) -> ScanLimits:
             f"{given}: {error}"
         ) from None
     return ScanLimits(min_range, max_range, masks)
+
+
+def _read_view(middleware: Middleware, given: dict[str, Any]) -> ViewSettings | None:
+    """Raises ParameterError."""
+    port, address, control = (
+        given.get("view_port", 0),
+        given.get("view_address", "127.0.0.1"),
+        given.get("view_control"),
+    )
+    port_name, address_name, control_name = map(middleware.parameter_name, _VIEW)
+    if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
+        raise ParameterError(f"{port_name} must be a port, 1 to 65535, or 0 for no view, not {port!r}")
+    if not isinstance(address, str) or not isinstance(control, bool | None):
+        raise ParameterError(f"{address_name} must be a text and {control_name} true or false, not {given}")
+    return ViewSettings(port, address, bool(control)) if port else None
 
 
 def _pairs(values: Any) -> Any:

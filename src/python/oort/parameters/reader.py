@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from oort import _core
-from oort._core import Parameters
+from oort._core import Parameters, parameter_table
 from oort.errors import ParameterError
 
 PRESETS = ("params", "kuri_original", "cartographer")
@@ -27,9 +27,19 @@ def read_parameters(path: str | os.PathLike[str] | None = None) -> Parameters:
             file, the line, the key's full path and, for an unknown key, the known key nearest to it.
     """
     parameters, notes = _core.read_parameters(str(packaged_path() if path is None else path))
-    for note in notes:
+    for note in [*notes, *missing_viewers(parameters)]:
         warnings.warn(note, stacklevel=2)
     return parameters
+
+
+def missing_viewers(parameters: Parameters) -> list[str]:
+    """A sentence for each of the original's viewers that is switched on: they are not there."""
+    switches = [entry.path for entry in parameter_table() if entry.path.endswith(".debug")]
+    return [
+        f"{path}: the original's viewer is not there, so the key has no effect; oort view shows the map as it grows"
+        for path in switches
+        if parameters.get(path)
+    ]
 
 
 def packaged_path(name: str = "params") -> Path:

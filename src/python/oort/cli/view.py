@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""``oort view INPUT``: shows a recording as it is mapped, or a saved map, on a page."""
+
+import argparse
+import math
+import os
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+
+from oort._core import Parameters, normalise_map_path
+from oort.cli.recording_arguments import add_recording_arguments, recording_of
+from oort.cli.tool import parse_arguments, run_tool
+from oort.errors import InputError
+from oort.live import Listener, LiveSession
+from oort.parameters import read_parameters
+from oort.recording import Recording
+from oort.view import PORT, Viewer
+from oort.view.player import play
+
+_EXAMPLE = "Example: oort view drive.bag --speed 20, then open the address that it prints."
+
+
+class _Teller(Listener):
+    """Says on standard error what nobody waits to hear of."""
+
+    def trouble(self, text: str) -> None:
+        print(f"oort view: {text}", file=sys.stderr)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="oort view",
+        description="Shows a recording as it is mapped, or a saved map, on a page for the browser: the map as it "
+        f"grows, the robot, the queue, how long things take. Ends with Ctrl-C. {_EXAMPLE}",
+    )
+    parser.add_argument("input", nargs="+", help="a recording, as for oort replay, or the path of a saved map")
+    parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
+    add_recording_arguments(parser)
+    parser.add_argument(
+        "--speed",
+        type=float,
+        default=10.0,
+        metavar="N",
+        help="times as fast as recorded, inf: all it can (default: 10)",
+    )
+    parser.add_argument("--map", metavar="BASE", help="save the map of a recording at this path (default: nowhere)")
+    parser.add_argument("--port", type=int, default=PORT, metavar="N", help=f"of the page (default: {PORT})")
+    parser.add_argument(
+        "--address",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        help="where to listen (default: 127.0.0.1, for this machine alone; for others to look, 0.0.0.0: the address "
+        "printed then holds a token, which OORT_VIEW_TOKEN may set)",
+    )
+    parser.add_argument("--control", action="store_true", help="let the page make calls: pause, docked, places, stop")
+    return parser
+
+
+def _recording(args: argparse.Namespace, parameters: Parameters) -> Recording | None:
+    """The recording that is named, or None for a saved map."""
+    if len(args.input) == 1 and Path(f"{normalise_map_path(args.input[0])}.map_capnp").is_file():
+        return None
+    recording = recording_of(args, parameters)
+    if recording.without_odometry:
+        parameters.set("use_odometry", False)
+    for note in recording.notes:
+        print(f"note: {note}", file=sys.stderr)
+    return recording
+
+
+def _run(args: argparse.Namespace) -> None:
+    if not args.speed > 0.0 or math.isnan(args.speed):
+        raise InputError(f"--speed {args.speed:g}: it must be above 0")
+    parameters = read_parameters(args.params)
+    recording = _recording(args, parameters)
+    live = LiveSession(parameters, _Teller())
+    try:
+        title = Path(args.input[0]).name if recording is None else recording.name
+        with Viewer(live, title=title, address=args.address, port=args.port, control=args.control) as viewer:
+            print(f"open {viewer.url}", flush=True)
+            if recording is None:
+                live.call("map/load", [os.path.abspath(normalise_map_path(args.input[0]))])
+            else:
+                _play(recording, live, args, viewer)
+            threading.Event().wait()
+    except KeyboardInterrupt:
+        pass  # how a view ends
+    finally:
+        live.close()
+
+
+def _play(recording: Recording, live: LiveSession, args: argparse.Namespace, viewer: Viewer) -> None:
+    path = os.path.abspath(args.map) if args.map else ""
+    play(recording, live, args.speed, path, viewer.watch.tell_progress)
+    print(f"{recording.name} is mapped; the page stays until Ctrl-C", flush=True)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status: 0 after Ctrl-C, or 2 for an error, which is printed."""
+    args = parse_arguments(_parser(), argv)
+    return run_tool("oort view", lambda: _run(args), args.input[0])
