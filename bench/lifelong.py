@@ -171,6 +171,13 @@ def _child(arguments: argparse.Namespace, day: int, queue: "multiprocessing.Queu
     queue.put(run_day(day, drive, arguments.out))
 
 
+def _panel(name: str, days: Sequence[float], values: Sequence[float]) -> Panel:
+    """Lengths in millimetres: a bar of a chart reaches at least to 1."""
+    if name.endswith("_m"):
+        return Panel(f"{name}m", days, [1e3 * value for value in values])
+    return Panel(name, days, values)
+
+
 def _row(values: Sequence[object]) -> str:
     return "| " + " | ".join(f"{v:.3f}" if isinstance(v, float) else str(v) for v in values) + " |"
 
@@ -206,7 +213,7 @@ def main() -> None:
         print(_row(list(asdict(days[-1]).values())), flush=True)
         (arguments.out / "days.json").write_text(json.dumps([asdict(d) for d in days], indent=1) + "\n")
     numbers = [float(d.day) for d in days]
-    panels = [Panel(name, numbers, [float(getattr(d, name)) for d in days]) for name in names[1:]]
+    panels = [_panel(name, numbers, [float(getattr(d, name)) for d in days]) for name in names[1:]]
     write_chart(arguments.out / "days.png", panels)
 
 

@@ -63,7 +63,9 @@ def _draw_panel(draw: ImageDraw.ImageDraw, panel: Panel, left: int, top: int) ->
         x = left + k * step
         if count:  # at least one pixel: a single outlier must be seen
             tall = max(1.0, height * count / most)
-            draw.rectangle((round(x) + 1, round(base - tall), round(x + step) - 1, base), fill=_BAR)
+            begin = round(x) + 1
+            end = max(begin, round(x + step) - 1)  # many bins are narrower than a pixel
+            draw.rectangle((begin, round(base - tall), end, base), fill=_BAR)
         if k % every == 0:
             draw.text((x, base + 4), f"{edge:g}", fill=_INK, font=small)
     draw.line((left, base, left + _WIDTH - 2 * _MARGIN, base), fill=_INK)
