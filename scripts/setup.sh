@@ -19,7 +19,7 @@ case "${1:-}" in
 esac
 
 packages=(g++ cmake ninja-build python3 python3-venv python3-dev
-  libceres-dev libeigen3-dev libopencv-core-dev libopencv-imgproc-dev capnproto libcapnp-dev)
+  libceres-dev libeigen3-dev capnproto libcapnp-dev)
 if [ $ros = ON ]; then
   packages+=(python3-roslaunch python3-rospy python3-tf2-ros rosout
     rosbash rospack-tools python3-rosbag python3-rosmsg python3-rosnode python3-rosparam python3-rosservice python3-rostopic)
@@ -29,7 +29,7 @@ if [ $ros = ON ]; then
   done
   packages+=(python3-genpy)
 fi
-[ $test = ON ] && packages+=(libgtest-dev clang-format-14 clang-tidy-14 chromium doxygen)
+[ $test = ON ] && packages+=(libgtest-dev pkgconf clang-format-14 clang-tidy-14 chromium doxygen)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+# Tries the wheel in dist/ where nothing else is: a bare Debian with Python, made by debootstrap (as root), into which
+# pip installs from a folder of wheels, without a network. A home is simulated and mapped there, the picture and the
+# page are made, and the map must have the bytes of the map that .venv makes here.
+#   scripts/try_wheel.sh [SUITE]      SUITE is bookworm if not given; its Python must be that of the wheel
+set -euo pipefail
+cd "$(dirname "$0")/.."
+suite=${1:-bookworm}
+root=build/wheel/$suite
+command -v debootstrap >/dev/null || { echo "debootstrap is not there: install Debian's package debootstrap" >&2; exit 1; }
+mirror=$({ cat /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null || true; } |
+  sed -n 's/^URIs: *//p; s/^deb \(\[.*\] \)\?\(\S*\) .*/\2/p' | head -1)
+[ -x $root/usr/bin/python3 ] || debootstrap --variant=minbase --include=python3-venv "$suite" $root "$mirror" >$root.log
+
+tag=$(chroot $root python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+wheel=$(ls dist/oort-*-"$tag"-*.whl) || { echo "dist/ has no wheel for $tag; see scripts/wheel.sh" >&2; exit 1; }
+rm -rf $root/try && mkdir -p $root/try/wheels
+.venv/bin/pip download --quiet --dest $root/try/wheels --python-version "${tag#cp}" --only-binary=:all: "$wheel"
+cat >$root/try/run.sh <<'RUN'
+set -e
+cd /try
+python3 -m venv venv
+venv/bin/pip install --quiet --no-index --find-links wheels oort
+venv/bin/oort simulate --seed 3 --minutes 2 --out home
+venv/bin/oort replay home/*.bag --out map --quiet
+venv/bin/oort check home/*.bag
+venv/bin/python -c 'import oort; print(len(oort.load_map("map/map")), "nodes")'
+RUN
+env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root unshare --net chroot $root bash /try/run.sh
+
+.venv/bin/oort replay $root/try/home/*.bag --out $root/try/here --quiet
+for file in map.map_capnp report.html map.png; do
+  [ -s $root/try/map/$file ] || { echo "$file was not made" >&2; exit 1; }
+done
+cmp $root/try/map/map.map_capnp $root/try/here/map.map_capnp
+echo "The wheel works on $suite; its map has the bytes of the map made here."
