@@ -35,6 +35,7 @@ from false_closures import (
     squared_distance,
 )
 from oort import _core
+from oort._core import SWITCH_ON
 from oort.evaluation.graph import position_rmse
 from oort.export.g2o import PoseGraph, read_g2o
 from trials.datasets import datasets
@@ -82,7 +83,7 @@ def solve_with_oort(spoilt: SpoiltGraph, truth: Floats, clean: Floats, scale: fl
     return Outcome(
         position_rmse(poses, truth),
         seconds,
-        int((switches[spoilt.false] > 0.5).sum()),
+        int((switches[spoilt.false] >= SWITCH_ON).sum()),
         robust_cost(spoilt.graph, clean, scale) - robust_cost(spoilt.graph, poses, scale),
     )
 
@@ -152,7 +153,7 @@ def measure_clean(graph: PoseGraph, name: str, scales: list[float]) -> Iterator[
     plain, _, _ = _core.optimize_graph(graph.poses, i, j, graph.measurements, graph.covariances, never)
     for scale in scales:
         poses, switches = optimise(graph, scale)
-        off = int((switches < 0.5).sum())
+        off = int((switches < SWITCH_ON).sum())
         yield f"| {name} | {scale:g} | {position_rmse(poses, plain):.5f} | {off} of {is_closure(graph).sum()} |"
 
 

@@ -16,11 +16,14 @@ import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
+from oort import _core
+
 HEADER = '''# SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
 # Written by scripts/stubs.sh from the extension.
 """{doc}"""
 
+import enum
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
@@ -82,6 +85,9 @@ def lines(body: list[ast.stmt], prefix: str, indent: str) -> Iterator[str]:
             bases = ", ".join(ast.unparse(base) for base in node.bases)
             yield f"{indent}class {node.name}" + (f"({bases}):" if bases else ":")
             yield from docstring(node, indent + "    ")
+            if bases == "enum.StrEnum":
+                yield from (f'{indent}    {member.name} = "{member.value}"' for member in getattr(_core, node.name))
+                continue
             yield from lines(node.body, f"{node.name}.", indent + "    ")
         elif isinstance(node, ast.FunctionDef) and shown(node.name):
             yield from function(node, prefix, indent)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from oort import Map
+from oort._core import SWITCH_ON
 from oort.poses import Array, between, compose
 
 _FAR_APART = 5.0
@@ -125,7 +126,7 @@ def _untied(map_: Map) -> int:
     """Counts the nodes outside the largest part that certain edges and closures that are on hold together."""
     edges, closures = map_.edges, map_.switchable_edges
     certain = np.hypot(*np.sqrt(np.diagonal(edges["covariance"], axis1=1, axis2=2)[:, :2]).T) < _TIED
-    on = closures["switch"] >= 0.5
+    on = closures["switch"] >= SWITCH_ON
     part = list(range(len(map_)))
 
     def root(node: int) -> int:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from oort import Parameters
+from oort._core import SWITCH_ON
 from oort.events import Event
 from oort.offline.results import Drive
 from oort.offline.schedule import TimedSchedule
@@ -130,4 +131,7 @@ def counts(replayed: Replayed) -> dict[str, float]:
         figures |= {f"{kind}_tried": s[kind]["tried"], f"{kind}_accepted": s[kind]["accepted"]}
         figures |= {f"{kind}_rejected_{reason}": count for reason, count in s[kind]["rejected"].items()}
     switches = replayed.drive.session.map.switchable_edges["switch"]
-    return figures | {"closures_on": float((switches >= 0.5).sum()), "closures_off": float((switches < 0.5).sum())}
+    return figures | {
+        "closures_on": float((switches >= SWITCH_ON).sum()),
+        "closures_off": float((switches < SWITCH_ON).sum()),
+    }

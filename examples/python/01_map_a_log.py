@@ -17,7 +17,7 @@ def map_a_log(log_path: str, map_path: str) -> None:
     uncertain = 0
     for scan in recording.scans():
         result = mapper.add_scan(scan, scan.odometry)
-        uncertain += result.tracking != "tracking"
+        uncertain += result.tracking is not oort.TrackingState.TRACKING
     mapper.finish()
     map_ = mapper.map()
     map_.save(map_path)

@@ -18,7 +18,7 @@ def localise(log_path: str, map_path: str) -> None:
     known = 0
     for scan in recording.scans():
         state = localizer.add_scan(scan, scan.odometry)
-        known += state == "tracking"
+        known += state is oort.LocalizationState.TRACKING
     print(f"{recording.num_scans} scans, {known} of them tracked")
     if localizer.T_map_base is None:
         raise oort.InputError("the robot was not found on the map")

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mapper, the localiser and the map as programs use them."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +43,8 @@ def test_a_result_tells_where_the_robot_is() -> None:
     result = drive(mapper)
     assert result.T_map_base == pytest.approx(base_of((0.59, 0.0, 1.18)).tolist(), abs=0.03)
     assert result.T_map_odom == pytest.approx((0.0, 0.0, 0.0), abs=0.03)  # the origin is the first sensor pose
-    assert result.tracking == "tracking"
+    assert result.tracking is oort.TrackingState.TRACKING
+    assert json.dumps(result.tracking) == '"tracking"'
     assert result.covariance.shape == (3, 3) and (np.diag(result.covariance) > 0.0).all()
 
 

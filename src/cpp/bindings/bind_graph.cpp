@@ -195,6 +195,7 @@ void bind_options(py::module_& m) {
 
 void bind_graph(py::module_& m) {
   bind_options(m);
+  m.attr("SWITCH_ON") = kSwitchOn;
   m.def(
       "optimize_graph", &optimize_graph, py::arg("node_poses"), py::arg("i"), py::arg("j"), py::arg("measurements"),
       py::arg("covariances"), py::arg("switchable"), py::arg("options") = OptimizerOptions{},

@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "oort/localization/localizer.hpp"
 #include "oort/localization/relocalizer.hpp"
+#include "states.hpp"
 
 namespace py = pybind11;
 
@@ -143,8 +144,7 @@ void bind_localizer(py::module_& m) {
           py::arg("sweep") = py::none(),
           "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.")
       .def_property_readonly(
-          "state", [](const Localizer& l) { return std::string(to_string(l.state())); },
-          "\"searching\", \"tracking\", \"uncertain\" or \"lost\".")
+          "state", [](const Localizer& l) { return l.state(); }, "How well the sensor\'s place is known.")
       .def_property_readonly(
           "T_map_sensor", [](const Localizer& l) { return tuple_of(l.T_map_sensor()); },
           "The sensor's pose at the latest scan; None while searching.")

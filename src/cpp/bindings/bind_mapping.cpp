@@ -13,23 +13,12 @@
 #include "bindings.hpp"
 #include "oort/maintenance/prune.hpp"
 #include "oort/mapper/mapper.hpp"
+#include "states.hpp"
 
 namespace py = pybind11;
 
 namespace oort {
 namespace {
-
-const char* name_of(ScanOutcome outcome) {
-  switch (outcome) {
-    case ScanOutcome::kNode:
-      return "node";
-    case ScanOutcome::kLocated:
-      return "located";
-    case ScanOutcome::kSkipped:
-      return "skipped";
-  }
-  return "";
-}
 
 py::dict dict_of(const RefinementCounts& counts) {
   py::dict dict;
@@ -40,18 +29,6 @@ py::dict dict_of(const RefinementCounts& counts) {
   dict["kept"] = counts.kept;
   dict["moved"] = counts.moved;
   return dict;
-}
-
-const char* name_of(TrackingState state) {
-  switch (state) {
-    case TrackingState::kTracking:
-      return "tracking";
-    case TrackingState::kUncertain:
-      return "uncertain";
-    case TrackingState::kLost:
-      return "lost";
-  }
-  return "";
 }
 
 py::dict dict_of(const TrackingCounts& counts) {
@@ -197,8 +174,7 @@ void bind_pruning(py::module_& m) {
 void bind_scan_result(py::module_& m) {
   py::class_<ScanResult>(m, "ScanResult", "What became of a scan.")
       .def_property_readonly(
-          "outcome", [](const ScanResult& r) { return name_of(r.outcome); },
-          "\"node\", \"located\" (relative to the last node) or \"skipped\" (too few returns)")
+          "outcome", [](const ScanResult& r) { return r.outcome; }, "What the scan became.")
       .def_readonly("node_id", &ScanResult::node_id, "The node that the pose is relative to, or None.")
       .def_property_readonly(
           "T_node_sensor", [](const ScanResult& r) { return tuple_of(r.T_node_sensor); },
@@ -209,8 +185,7 @@ void bind_scan_result(py::module_& m) {
           "rejection", [](const ScanResult& r) { return text_of(r.rejection); },
           "Why its match is of no use, for people; None if it is.")
       .def_property_readonly(
-          "tracking", [](const ScanResult& r) { return name_of(r.tracking); },
-          "How well the sensor's place is known: \"tracking\", \"uncertain\" or \"lost\".")
+          "tracking", [](const ScanResult& r) { return r.tracking; }, "How well the sensor's place is known.")
       .def_property_readonly(
           "T_map_base", [](const ScanResult& r) { return tuple_of(r.T_map_base); },
           "The base's pose (x, y, theta) in the map when the scan came.")
@@ -283,8 +258,12 @@ void bind_mapping(py::module_& m) {
           py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
           py::arg("sweep") = py::none(),
           "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.")
+      .def("request_dock_closure", &Mapper::request_dock_closure,
+           "Has the current place linked to the dock, beside the scans to come.")
+      .def_property_readonly("dock_closure_found", &Mapper::dock_closure_found,
+                             "Whether the last request found a closure; None without one, or while it is looked for.")
       .def("notify_docked", &Mapper::notify_docked, py::call_guard<py::gil_scoped_release>(),
-           "Links the current place to the dock. Whether a closure was found.")
+           "Links the current place to the dock, and waits for that. Whether a closure was found.")
       .def(
           "begin_session", [](Mapper& mapper, const PoseTuple& pose) { return mapper.begin_session(pose_of(pose)); },
           py::arg("sensor_on_map"), py::call_guard<py::gil_scoped_release>(),

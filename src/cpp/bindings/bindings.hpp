@@ -44,6 +44,7 @@ inline Sweep sweep_of(const SweepTuple& sweep) {
 /// A file's text need not be UTF-8; what is not becomes U+FFFD instead of an exception.
 pybind11::str to_str(const std::string& text);
 
+void bind_states(pybind11::module_& m);
 void bind_parameters(pybind11::module_& m);
 void bind_map(pybind11::module_& m);
 void bind_graph(pybind11::module_& m);

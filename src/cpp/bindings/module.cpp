@@ -11,12 +11,18 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "The engine of Oort. Use it through the modules of the package oort.";
   m.attr("__version__") = OORT_VERSION;
 
-  const auto root = py::register_exception<oort::Error>(m, "Error", PyExc_RuntimeError);
-  py::register_exception<oort::ParameterError>(m, "ParameterError", root.ptr());
-  py::register_exception<oort::MapFileError>(m, "MapFileError", root.ptr());
-  py::register_exception<oort::InputError>(m, "InputError", root.ptr());
-  py::register_exception<oort::StateError>(m, "StateError", root.ptr());
+  auto root = py::register_exception<oort::Error>(m, "Error", PyExc_RuntimeError);
+  root.doc() = "What Oort cannot do, and what to do about it.";
+  py::register_exception<oort::ParameterError>(m, "ParameterError", root.ptr()).doc() =
+      "A parameter or an option has a value that it cannot have.";
+  py::register_exception<oort::MapFileError>(m, "MapFileError", root.ptr()).doc() =
+      "A map cannot be read or written: its files are missing, damaged or of another program.";
+  py::register_exception<oort::InputError>(m, "InputError", root.ptr()).doc() =
+      "Input cannot be used: a recording, a scan, a pose, a graph.";
+  py::register_exception<oort::StateError>(m, "StateError", root.ptr()).doc() =
+      "A call does not fit the state: nothing is being mapped, there is a map already, there is no such place.";
 
+  oort::bind_states(m);
   oort::bind_parameters(m);
   oort::bind_map(m);
   oort::bind_graph(m);

@@ -3,6 +3,7 @@
 # Written by scripts/stubs.sh from the extension.
 """The engine of Oort. Use it through the modules of the package oort."""
 
+import enum
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
@@ -11,11 +12,42 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
-class Error(RuntimeError): ...
-class ParameterError(Error): ...
-class MapFileError(Error): ...
-class InputError(Error): ...
-class StateError(Error): ...
+class Error(RuntimeError):
+    """What Oort cannot do, and what to do about it."""
+
+class ParameterError(Error):
+    """A parameter or an option has a value that it cannot have."""
+
+class MapFileError(Error):
+    """A map cannot be read or written: its files are missing, damaged or of another program."""
+
+class InputError(Error):
+    """Input cannot be used: a recording, a scan, a pose, a graph."""
+
+class StateError(Error):
+    """A call does not fit the state: nothing is being mapped, there is a map already, there is no such place."""
+
+class TrackingState(enum.StrEnum):
+    """How well the sensor's place on the map is known: by what scans show, by odometry alone, or not."""
+
+    TRACKING = "tracking"
+    UNCERTAIN = "uncertain"
+    LOST = "lost"
+
+class ScanOutcome(enum.StrEnum):
+    """What a scan became: a node, a pose relative to the last node, or nothing as it has too few returns."""
+
+    NODE = "node"
+    LOCATED = "located"
+    SKIPPED = "skipped"
+
+class LocalizationState(enum.StrEnum):
+    """How well the sensor's place on a saved map is known."""
+
+    SEARCHING = "searching"
+    TRACKING = "tracking"
+    UNCERTAIN = "uncertain"
+    LOST = "lost"
 
 class ParameterEntry:
     """One row of the table of parameters."""
@@ -320,14 +352,14 @@ class ScanResult:
     def node_id(self) -> int | None:
         """The node that the pose is relative to, or None."""
     @property
-    def outcome(self) -> str:
-        """ "node", "located" (relative to the last node) or "skipped" (too few returns)"""
+    def outcome(self) -> ScanOutcome:
+        """What the scan became."""
     @property
     def rejection(self) -> str | None:
         """Why its match is of no use, for people; None if it is."""
     @property
-    def tracking(self) -> str:
-        """How well the sensor's place is known: "tracking", "uncertain" or "lost"."""
+    def tracking(self) -> TrackingState:
+        """How well the sensor's place is known."""
     @property
     def was_tracked(self) -> bool:
         """Whether the scan matcher was asked."""
@@ -385,7 +417,9 @@ class Mapper:
     def mount_sensor(self, sensor_on_base: tuple[float, float, float]) -> None:
         """Says where the sensor sits on the base, before the first scan."""
     def notify_docked(self) -> bool:
-        """Links the current place to the dock. Whether a closure was found."""
+        """Links the current place to the dock, and waits for that. Whether a closure was found."""
+    def request_dock_closure(self) -> None:
+        """Has the current place linked to the dock, beside the scans to come."""
     def resume_from_paused(self) -> None:
         """The next scan makes a node whose link to the last one is very uncertain."""
     def set_map(self, map: Map) -> None:
@@ -393,6 +427,9 @@ class Mapper:
     @property
     def closure_attempts(self) -> list[tuple[int, int, str | None, tuple[float, float, float], float]]:
         """(query node, candidate node, why it was rejected or None, T_candidate_query, inlier ratio) of each kept."""
+    @property
+    def dock_closure_found(self) -> bool | None:
+        """Whether the last request found a closure; None without one, or while it is looked for."""
     @property
     def has_pose(self) -> bool:
         """Whether the sensor's pose in the map is known."""
@@ -516,8 +553,8 @@ class Localizer:
     def covariance(self) -> NDArray[np.float64]:
         """(3, 3) of T_map_sensor, along the axes of the map."""
     @property
-    def state(self) -> str:
-        """ "searching", "tracking", "uncertain" or "lost"."""
+    def state(self) -> LocalizationState:
+        """How well the sensor's place is known."""
     @property
     def statistics(self) -> dict[str, Any]:
         """Counts since it was made."""
@@ -670,3 +707,4 @@ def unknown_parameter(path: str) -> str:
     """The message for a path that is in no table, with the nearest path or section that is."""
 
 FORMAT_VERSION: int
+SWITCH_ON: float

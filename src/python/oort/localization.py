@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from oort import _core
 from oort._core import (
     Hypothesis,
+    LocalizationState,
     Map,
     Parameters,
     PlacedScan,
@@ -55,7 +56,7 @@ class Localizer(_core.Localizer):
         super().__init__(reference, parameters, mount)
         self._sensor_to_base = between(mount, (0.0, 0.0, 0.0))  # T_sensor_base
 
-    def add_scan(self, scan: LaserScan, odometry: ArrayLike) -> str:
+    def add_scan(self, scan: LaserScan, odometry: ArrayLike) -> LocalizationState:
         """Takes the next scan with ``odometry``, T_odom_base at its stamp; the state, see `state`.
 
         Raises InputError if the scan's limits or the pose are not finite; nothing changes then.

@@ -225,8 +225,12 @@ class Session:
         self._state = State.MAPPING
         return carriers
 
-    def notify_docked(self) -> bool:
-        """Says that the robot stands at the dock it saw earlier; whether what it sees now fits the dock."""
+    def notify_docked(self) -> None:
+        """Says that the robot stands at the dock it saw earlier.
+
+        It is linked to the dock beside the scans to come, at the latest when mapping stops; the mapper's
+        dock_closure_found tells what came of it.
+        """
         docked = self._naming("map/notify_docked")
         if self._state is not State.MAPPING:
             raise StateError(f"{docked}: the state is {self._state.value}; it needs mapping")
@@ -234,7 +238,7 @@ class Session:
             raise StateError(
                 f"{docked}: no scan has been mapped yet, so there is nothing to link; drive and scan first"
             )
-        return self._mapper.notify_docked()
+        self._mapper.request_dock_closure()
 
     def pause(self) -> None:
         """Stops taking scans until resume_from_paused or start."""

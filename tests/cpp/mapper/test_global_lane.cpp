@@ -100,6 +100,8 @@ TEST(GlobalLane, CallsBetweenScansSeeTheSameMapWithTheThreadAndWithout) {
   for (const bool threaded : {false, true}) {
     Mapper mapper(with_thread(threaded), kMount);
     drive_and_log(mapper);
+    mapper.request_dock_closure();
+    drive_and_log(mapper);
     mapper.notify_docked();
     mapper.resume_from_paused();
     drive_and_log(mapper);

@@ -55,13 +55,48 @@ TEST_F(MapperCallsTest, NotifyDockedMakesANodeAndOneSwitchableEdge) {
   EXPECT_EQ(mapper.statistics().global.docks.accepted, 1u);
 }
 
-TEST_F(MapperCallsTest, NotifyDockedTwiceMakesOneNode) {
+TEST_F(MapperCallsTest, AParkedRobotIsLinkedOnce) {
   drive_lap();
-  mapper.notify_docked();
   const std::size_t nodes = map().graph.nodes.size();
-  mapper.notify_docked();
+  for (int k = 0; k < 200; ++k) {
+    EXPECT_TRUE(mapper.notify_docked());
+    drive(mapper, world, {truth.back()}, {odometry.back()}, 200.0 + 0.1 * k);
+  }
+  EXPECT_EQ(map().graph.nodes.size(), nodes + 1);
+  EXPECT_EQ(mapper.statistics().global.docks.tried, 1u);
+  EXPECT_EQ(mapper.statistics().global.docks.accepted, 1u);
+}
+
+TEST_F(MapperCallsTest, WhereTheDockIsNotFoundAParkedRobotIsTriedAgainWithoutANewNode) {
+  const auto half = static_cast<std::ptrdiff_t>(truth.size() / 2);
+  drive(mapper, world, {truth.begin(), truth.begin() + half}, {odometry.begin(), odometry.begin() + half});
+  EXPECT_FALSE(mapper.notify_docked());
+  const std::size_t nodes = map().graph.nodes.size();
+  EXPECT_FALSE(mapper.notify_docked());
   EXPECT_EQ(map().graph.nodes.size(), nodes);
   EXPECT_EQ(mapper.statistics().global.docks.tried, 2u);
+}
+
+TEST_F(MapperCallsTest, TheDockIsLookedForBesideTheScansToCome) {
+  drive_lap();
+  EXPECT_EQ(mapper.dock_closure_found(), std::nullopt);
+  mapper.request_dock_closure();
+  mapper.request_dock_closure();  // still there: one is enough
+  EXPECT_EQ(mapper.dock_closure_found(), std::nullopt);
+  int scans = 0;
+  for (; scans < 100 && !mapper.dock_closure_found(); ++scans) {
+    drive(mapper, world, {truth.back()}, {odometry.back()}, 200.0 + 0.1 * scans);
+  }
+  EXPECT_GT(scans, 2);
+  EXPECT_EQ(mapper.dock_closure_found(), std::optional<bool>(true));
+  EXPECT_EQ(mapper.statistics().global.docks.accepted, 1u);
+}
+
+TEST_F(MapperCallsTest, WhatIsLeftToLookForAtTheDockIsDoneWhenMappingEnds) {
+  drive_lap();
+  mapper.request_dock_closure();
+  mapper.finish();
+  EXPECT_EQ(mapper.dock_closure_found(), std::optional<bool>(true));
 }
 
 TEST_F(MapperCallsTest, NotifyDockedSomewhereElseChangesNoPose) {

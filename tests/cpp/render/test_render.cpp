@@ -117,6 +117,17 @@ TEST(Render, ClearsADiscAroundEachNode) {
   EXPECT_EQ(count(render({node}, PointClouds({{0, 0.0, corners}}), parameters).map, kFree), 1);
 }
 
+TEST(Render, TheDiscMayBeAroundTheBase) {
+  const std::vector<Point2> corners = {{-1.0, -1.0, 1.0}, {1.0, 1.0, 1.0}};
+  OutputMapParameters parameters = documented();
+  parameters.probability_grid.insert_free_space = false;
+  parameters.footprint_x = -0.5;  // the sensor is at the robot's front, and the robot looks along y
+  const OccupancyGrid map = render({{0, {0.0, 0.0, M_PI / 2.0}}}, PointClouds({{0, 0.0, corners}}), parameters).map;
+  EXPECT_EQ(count(map, kFree), 29);
+  EXPECT_EQ(cell_at(map, 0.01, -0.49), kFree);
+  EXPECT_EQ(cell_at(map, 0.01, 0.01), kUnknown);
+}
+
 TEST(Render, IsTheSameEachTime) {
   std::vector<Node> nodes;
   std::vector<PointCloud> clouds;
@@ -254,6 +265,16 @@ TEST(Speckle, MorphologicalClosesGapsInWalls) {
   EXPECT_EQ(rows_of(remove_speckles(gap, parameters))[2], "########");
   parameters.morphological = {0, 0};
   EXPECT_EQ(rows_of(remove_speckles(picture(kRoom), parameters)), kRoom);
+}
+
+TEST(Speckle, TheMapIsCleanedTooWhereThatIsWanted) {
+  OutputMapParameters parameters = documented();
+  const std::vector<Point2> stray = {{2.0, 0.0, 1.0}, {1.0, 1.0, 1.0}, {0.0, -1.5, 1.0}};
+  const RenderedMap plain = render_repeated(stray, 1, parameters);
+  parameters.clean_map = true;
+  const RenderedMap cleaned = render_repeated(stray, 1, parameters);
+  EXPECT_NE(plain.map.cells, plain.map_cleaned.cells);
+  EXPECT_EQ(cleaned.map.cells, plain.map_cleaned.cells);
 }
 
 TEST(Speckle, TheRobotsWayStaysFreeInTheCleanedMap) {

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A live session without ROS: the queue, the waiting, what readers see, and what must not end its threads."""
 
+import math
 import threading
 import time
 from dataclasses import replace
@@ -9,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers.live_rig import Recorder, drive, driven, until
@@ -254,8 +256,45 @@ def test_a_place_that_is_no_dock_is_told(live: LiveSession, recorder: Recorder) 
     live.add_scan(lambda: nothing)
     before = live.snapshot.closures
     live.call("map/notify_docked")
+    for _ in range(30):  # beside these it is looked for
+        live.add_scan(lambda: nothing)
+    until(lambda: len(recorder.troubles) > 0)
     assert live.snapshot.closures == before
     assert recorder.troubles[-1].startswith("map/notify_docked: nothing was linked")
+
+
+def test_scans_are_mapped_while_the_dock_is_looked_for(live: LiveSession, recorder: Recorder) -> None:
+    live.call("map/start", [""])
+    driven(live, 1)
+    live.places.create("dock", "dock")
+    poses = [(0.5 * math.sin(a), 0.7 * math.sin(2.0 * a)) for a in np.linspace(0.1, 2.0 * np.pi, 60).tolist()]
+    for k, (x, theta) in enumerate(poses):  # to and fro, back to the dock
+        live.add_scan(lambda x=x, theta=theta, k=k: room_scan(x, 0.0, theta, 1.0 + 0.1 * k))  # type: ignore[misc]
+    until(lambda: len(live.inbox) == 0)
+    mapped, nodes = len(recorder.poses), live.snapshot.num_nodes
+    answers: list[object] = []
+    asking = [threading.Thread(target=lambda: answers.append(live.call("map/notify_docked"))) for _ in range(2)]
+    for caller in asking:
+        caller.start()
+    for k in range(100):
+        live.add_scan(lambda k=k: room_scan(0.0, 0.0, 0.0, 8.0 + 0.1 * k))  # type: ignore[misc]
+        time.sleep(0.01)
+        if len(answers) == 2:
+            break
+    for caller in asking:
+        caller.join()
+    assert answers == [True, True]
+    assert len(recorder.poses) > mapped + 2  # what was found took effect with one of these
+    assert live.snapshot.num_nodes == nodes + 1
+    assert live.run(lambda session: session.mapper.statistics["docks"]["tried"]) == 1
+
+
+def test_without_scans_nobody_waits_for_the_dock(live: LiveSession) -> None:
+    live.call("map/start", [""])
+    driven(live)
+    assert live.call("map/notify_docked") is None
+    live.call("map/stop")
+    assert live.run(lambda session: session.mapper.dock_closure_found) is not None
 
 
 # ---- figures ----

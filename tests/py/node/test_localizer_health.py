@@ -12,6 +12,7 @@ pytest.importorskip("rospy")
 import genpy
 from diagnostic_msgs.msg import DiagnosticStatus
 
+from oort import LocalizationState
 from oort.live.window import Spread
 from oort.node.diagnostics import diagnostic_array
 from oort.node.localizer_health import LocalizerHealth, Sighting
@@ -22,7 +23,7 @@ STATISTICS = {
     "match_rejections": {"low support": 8}, "search_rejections": {"low_support": 1, "ambiguous": 3},
 }  # fmt: skip
 SIGHTING = Sighting(
-    "tracking", 0.92, (1.0, 2.0, 0.5), (0.9, 2.0, 0.5), np.diag([0.0009, 0.0004, 0.0001]), STATISTICS
+    LocalizationState.TRACKING, 0.92, (1.0, 2.0, 0.5), (0.9, 2.0, 0.5), np.diag([0.0009, 0.0004, 0.0001]), STATISTICS
 )  # fmt: skip
 WELL = LocalizerHealth(
     queue_size=1, scan_topic="/scan", scans_received=100, scan_rate_hz=10.0, seconds_without_scan=0.1,
@@ -38,7 +39,7 @@ def status(health: LocalizerHealth) -> Any:
 
 
 def in_state(state: str) -> Sighting:
-    return replace(SIGHTING, state=state)
+    return replace(SIGHTING, state=LocalizationState(state))
 
 
 def test_all_well() -> None:

@@ -34,6 +34,9 @@ struct Edge {
   Constraint constraint;
 };
 
+/// A switch that is on: at least as close to 1 as to 0.
+constexpr double kSwitchOn = 0.5;
+
 /// An edge that the optimiser may switch off (Suenderhauf and Protzel 2012).
 struct SwitchableEdge {
   std::uint64_t id = 0;
@@ -45,8 +48,8 @@ struct SwitchableEdge {
   /// sets it.
   double firmness = 1.0;
 
-  /// Whether it is believed: the switch is at least as close to 1 as to 0.
-  bool is_on() const { return switch_value >= 0.5; }
+  /// Whether it is believed.
+  bool is_on() const { return switch_value >= kSwitchOn; }
 };
 
 struct Graph {

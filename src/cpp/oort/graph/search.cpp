@@ -63,23 +63,26 @@ double robust_cost(const GraphSolver& solver) {
 }
 
 void Search::run(bool decides) {
-  const bool innovation = has_large_innovation();
-  if (innovation) switch_all_on();
+  const std::vector<std::size_t> surprising = large_innovations();
+  if (!surprising.empty()) switch_all_on();
   if (!decides) {
     solve_switches(0.0, GraphTuning::kTolerance, max_iterations_, max_iterations_);
     return;
   }
-  if (innovation) find_best_start();
+  if (!surprising.empty()) find_best_start(surprising);
   decide();
 }
 
-/// Whether an edge that was on is far off at the poses as they are; for a firm one, farther than it already was.
-bool Search::has_large_innovation() const {
-  return std::any_of(solver_.links().begin(), solver_.links().end(), [&](const Link& link) {
-    if (!link.switchable || link.s <= agreeing_switch(link)) return false;
+/// The edges that were on and are far off at the poses as they are; firm ones, farther than they already were.
+std::vector<std::size_t> Search::large_innovations() const {
+  std::vector<std::size_t> surprising;
+  for (std::size_t k = 0; k < solver_.links().size(); ++k) {
+    const Link& link = solver_.links()[k];
+    if (!link.switchable || link.s <= agreeing_switch(link)) continue;
     const double known = is_firm(link) ? solver_.squared_error_at(link, link.s) : 0.0;
-    return solver_.squared_error(link) > GraphTuning::kLargeInnovation + known;
-  });
+    if (solver_.squared_error(link) > GraphTuning::kLargeInnovation + known) surprising.push_back(k);
+  }
+  return surprising;
 }
 
 /// The switch of an edge that just agrees.
@@ -93,16 +96,18 @@ void Search::switch_all_on() {
 
 /// From the poses as they are, and from those of the trajectory alone, which false edges have not bent yet; from the
 /// better ones with firm edges believed; then once more, without the edges that are off there, so that those in doubt
-/// get a second chance.
-void Search::find_best_start() {
+/// get a second chance. Last, each of the newest that surprised and are off is believed: a trajectory that must bend
+/// far has not bent before the pull of a switch has faded.
+void Search::find_best_start(const std::vector<std::size_t>& surprising) {
   std::vector<Pose2> best = solver_.poses();
   double least = robust_cost(solver_);
-  const auto try_from = [&](std::vector<Pose2> start, double least_switch, bool believes_firm = false) {
+  const auto try_from = [&](std::vector<Pose2> start, double least_switch,
+                            const std::vector<std::size_t>& believed = {}, int steps = GraphTuning::kSearchSteps) {
     solver_.set_poses(std::move(start));
     switch_all_on();
-    if (believes_firm) believe_firm(true);
-    solve_switches(least_switch, GraphTuning::kSearchTolerance, GraphTuning::kSearchSteps, GraphTuning::kSearchRounds);
-    if (believes_firm) believe_firm(false);
+    believe(believed, true);
+    solve_switches(least_switch, GraphTuning::kSearchTolerance, steps, GraphTuning::kSearchRounds);
+    believe(believed, false);
     if (const double reached = robust_cost(solver_); reached < least) {
       least = reached;
       best = solver_.poses();
@@ -112,17 +117,27 @@ void Search::find_best_start() {
   const bool is_chain = believed_cost(solver_) < GraphTuning::kNoCost;
   try_from(best, 0.0);
   if (!is_chain && !is_dear_) try_from(std::move(dead_reckoned), 0.0);
-  const auto& links = solver_.links();
-  if (std::any_of(links.begin(), links.end(), is_firm)) try_from(best, GraphTuning::kOffWhileSearching, true);
+  const std::vector<Link>& links = solver_.links();
+  std::vector<std::size_t> firm;
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    if (links[k].switchable && is_firm(links[k])) firm.push_back(k);
+  }
+  if (!firm.empty()) try_from(best, GraphTuning::kOffWhileSearching, firm);
   try_from(best, GraphTuning::kOffWhileSearching);
+  std::size_t tries = is_dear_ ? GraphTuning::kBelieved : 0;
+  for (auto k = surprising.rbegin(); k != surprising.rend() && tries < GraphTuning::kBelieved; ++k) {
+    solver_.set_poses(best);
+    if (2.0 * solver_.best_switch(links[*k], solver_.squared_error(links[*k])) > 1.0) continue;  // is on
+    max_iterations_ += GraphTuning::kBelievedSteps;
+    try_from(best, GraphTuning::kOffWhileSearching, {*k}, GraphTuning::kBelievedSteps);
+    ++tries;
+  }
   solver_.set_poses(std::move(best));
 }
 
-/// Makes firm edges part of what is always believed, or no longer.
-void Search::believe_firm(bool believe) {
-  for (std::size_t k = 0; k < solver_.links().size(); ++k) {
-    if (is_firm(solver_.links()[k])) solver_.set_switchable(k, !believe);
-  }
+/// Makes some edges part of what is always believed, or no longer.
+void Search::believe(const std::vector<std::size_t>& edges, bool believe) {
+  for (const std::size_t k : edges) solver_.set_switchable(k, !believe);
 }
 
 /// With the edges whose best switch is at least this, then with those that are not off.

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Internal to the optimiser.
+#include <cstddef>
+#include <vector>
+
 #include "oort/graph/graph_solver.hpp"
 
 namespace oort {
@@ -26,11 +29,11 @@ class Search {
   GraphSolver::Progress progress() const { return progress_; }
 
  private:
-  bool has_large_innovation() const;
+  std::vector<std::size_t> large_innovations() const;
   double agreeing_switch(const Link& link) const;
   void switch_all_on();
-  void find_best_start();
-  void believe_firm(bool believe);
+  void find_best_start(const std::vector<std::size_t>& surprising);
+  void believe(const std::vector<std::size_t>& edges, bool believe);
   void solve_switches(double least_switch, double tolerance, int most_steps, int most_rounds);
   void decide();
   template <typename Rule>

@@ -44,6 +44,10 @@ struct GraphTuning {
   /// Blocks in the factor from which on a step is so expensive that one start must do.
   static constexpr std::size_t kExpensiveBlocks = 100'000;
 
+  /// Edges that surprised and are off at the best solution, the newest ones, that are tried as if they were certain.
+  static constexpr std::size_t kBelieved = 3;
+  static constexpr int kBelievedSteps = 20;  ///< of each of them, beside the others: far bends take more
+
   /// From this round of deciding on, edges are only left out, so that deciding ends.
   static constexpr int kRoundsBothWays = 10;
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/local_slam/frsm_scan_tracker.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "oort/local_slam/tuning.hpp"
@@ -44,7 +45,7 @@ Rejection rejection_of_unmatched(frsm::Status status) {
 }  // namespace
 
 FrsmScanTracker::FrsmScanTracker(const FrsmMatcherParameters& parameters, bool use_odometry)
-    : tracker_(tracker_params(parameters, use_odometry)) {}
+    : tracker_(tracker_params(parameters, use_odometry)), error_(match_error(parameters)) {}
 
 void FrsmScanTracker::reset(const Pose2& T_local_sensor) {
   tracker_.reset(to_frsm(T_local_sensor));
@@ -61,7 +62,12 @@ TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, cons
   TrackedScan tracked;
   tracked.T_local_sensor = from_frsm(match.pose);
   tracked.information = match.information;
-  tracked.covariance = match.covariance;
+  tracked.covariance = match.covariance + error_;
+  // I (1 + E I)^-1 is (I^-1 + E)^-1, where what is not seen has no inverse.
+  if (!error_.isZero(0.0)) {
+    const Eigen::Matrix3d blurred = Eigen::Matrix3d::Identity() + error_ * match.information;
+    tracked.information = match.information * blurred.inverse();
+  }
   tracked.inlier_ratio = match.inlier_ratio;
   tracked.degenerate = match.degenerate;
   tracked.hypothesis = tracker_.hypothesis();

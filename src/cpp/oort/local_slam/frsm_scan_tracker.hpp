@@ -20,6 +20,7 @@ class FrsmScanTracker : public ScanTracker {
 
  private:
   frsm::Tracker tracker_;
+  Eigen::Matrix3d error_;  // of a match, beyond its own covariance
 };
 
 }  // namespace oort

@@ -21,6 +21,18 @@ void check_odometry(const LaserScan& scan, const Pose2& T_odom_base) {
 
 }  // namespace
 
+std::string_view to_string(ScanOutcome outcome) {
+  switch (outcome) {
+    case ScanOutcome::kNode:
+      return "node";
+    case ScanOutcome::kLocated:
+      return "located";
+    case ScanOutcome::kSkipped:
+      return "skipped";
+  }
+  return "unknown";
+}
+
 LocalSlam::LocalSlam(const Parameters& parameters)
     : parameters_(parameters), lasers_(parameters, {}), trajectory_(parameters) {}
 

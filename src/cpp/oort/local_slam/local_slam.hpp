@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
@@ -20,6 +21,9 @@ enum class ScanOutcome {
   kLocated,  ///< it was located relative to the last node
   kSkipped,  ///< it had too few returns: located by odometry alone, if there is a node to be relative to
 };
+
+/// As reports, messages and Python have it.
+std::string_view to_string(ScanOutcome outcome);
 
 struct LocalCounts {
   std::uint64_t scans = 0;

@@ -8,6 +8,18 @@
 
 namespace oort {
 
+std::string_view to_string(TrackingState state) {
+  switch (state) {
+    case TrackingState::kTracking:
+      return "tracking";
+    case TrackingState::kUncertain:
+      return "uncertain";
+    case TrackingState::kLost:
+      return "lost";
+  }
+  return "unknown";
+}
+
 void TrackingMonitor::add_untied(std::uint64_t first_node, bool is_guess) {
   if (!is_untied_) untied_begin_ = first_node;
   is_guess_ = is_guess || (is_untied_ && is_guess_);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <string_view>
 
 #include "oort/graph/graph.hpp"
 
@@ -13,6 +14,9 @@ enum class TrackingState {
   kUncertain,  ///< odometry alone says where it is, or its segment is untied
   kLost,       ///< it has been odometry alone for long, or neither odometry nor the scans can be trusted
 };
+
+/// As reports, messages and Python have it.
+std::string_view to_string(TrackingState state);
 
 /// Follows the tracking state from scan to scan. It counts scans and reads no clock.
 class TrackingMonitor {

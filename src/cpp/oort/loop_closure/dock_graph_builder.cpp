@@ -90,10 +90,11 @@ DockGraphBuilder::DockGraphBuilder(const Parameters& parameters)
     : parameters_(parameters.dock_graph_builder),
       table_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
       contours_(frsm::ContourParams::urg()),
-      matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
+      matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)),
+      error_(match_error(parameters.incremental_graph_builder.frsm_matcher)) {}
 
 std::optional<Closure> DockGraphBuilder::find(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
-                                              ClosureCounts& counts) const {
+                                              ClosureCounts& counts, WorkMeter* meter) const {
   ++counts.tried;
   const DockPlace dock = nearest_dock(map, segments, query);
   Rejection rejection = Rejection::kNone;
@@ -104,10 +105,10 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const TrajectorySe
     const auto least = static_cast<std::size_t>(parameters_.dock_match_least_size);
     const auto most = static_cast<std::size_t>(parameters_.dock_match_submap_size);
     std::size_t size = walk_trajectory(map, segments, query, Direction::kBackward, most).size();
-    closure = match(map, segments, query, dock, size, rejection);
+    closure = match(map, segments, query, dock, size, rejection, meter);
     for (size /= 2; !closure && size >= least; size /= 2) {
       Rejection later = Rejection::kNone;  // what the documented number of nodes says is what counts
-      closure = match(map, segments, query, dock, size, later);
+      closure = match(map, segments, query, dock, size, later, meter);
       if (closure && closure->inlier_ratio == 0.0) closure.reset();  // but more nodes did see something
     }
   }
@@ -120,8 +121,8 @@ std::optional<Closure> DockGraphBuilder::find(const Map& map, const TrajectorySe
 }
 
 std::optional<Closure> DockGraphBuilder::match(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
-                                               const DockPlace& dock, std::size_t query_size,
-                                               Rejection& rejection) const {
+                                               const DockPlace& dock, std::size_t query_size, Rejection& rejection,
+                                               WorkMeter* meter) const {
   const std::vector<PlacedNode> query_nodes = walk_trajectory(map, segments, query, Direction::kBackward, query_size);
   const std::uint64_t way_back = first_of_the_way_back(parameters_, dock.node, query, query_size);
   const std::vector<PlacedNode> reference = reference_nodes(
@@ -137,9 +138,17 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const TrajectoryS
   const double sigmas =
       parameters_.closure_firmness > 1.0 ? LoopClosureTuning::kReachSigmas : 1.0;  // 1 is what is documented
   const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / sigmas).cwiseAbs2().asDiagonal()};
+  const frsm::Points points = points_of(map, query_nodes);
+  const auto drawn = static_cast<double>(reference.size() * map.clouds[dock.node].points.size());
+  charge(meter, LoopClosureTuning::kFrsmWorkPerDrawn * drawn + LoopClosureTuning::kFrsmWorkPerPoint *
+                                                                   static_cast<double>(points.size()) *
+                                                                   LoopClosureTuning::kFrsmPasses);
   const auto submap = draw_submap(map, reference, table_, contours_);
-  const frsm::Match match = matcher_.match(*submap, points_of(map, query_nodes), prior.mean,
-                                           {reach, reach, parameters_.search_window_theta}, &prior);
+  const auto on_lookups = [meter](std::uint64_t lookups) {
+    charge(meter, LoopClosureTuning::kFrsmWorkPerLookup * static_cast<double>(lookups));
+  };
+  const frsm::Match match =
+      matcher_.match(*submap, points, prior.mean, {reach, reach, parameters_.search_window_theta}, &prior, on_lookups);
   const Pose2 T_dock_query = from_frsm(match.pose);
   if (match.status == frsm::Status::kTooFewPoints || match.status == frsm::Status::kEmptyScan) {
     // Nothing was seen that could speak against the contacts: the robot is at the dock, give or take their reach.
@@ -152,7 +161,7 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const TrajectoryS
   } else if (between(dock.T_node_dock, T_dock_query).translation().norm() > parameters_.dock_match_max_dist) {
     rejection = Rejection::kDistance;
   } else {
-    Eigen::Matrix3d covariance = match.covariance;
+    Eigen::Matrix3d covariance = match.covariance + error_;
     if (parameters_.closure_firmness > 1.0) {  // what can hardly be doubted must be honest
       covariance += Eigen::Vector3d(LoopClosureTuning::kDockSigma, LoopClosureTuning::kDockSigma,
                                     LoopClosureTuning::kDockSigmaTheta)

@@ -4,6 +4,7 @@
 #include <frsm/matcher.hpp>
 #include <optional>
 
+#include "oort/geometry/work_meter.hpp"
 #include "oort/loop_closure/closure.hpp"
 #include "oort/loop_closure/statistics.hpp"
 #include "oort/map/map.hpp"
@@ -34,18 +35,20 @@ class DockGraphBuilder {
 
   /// The closure from the dock's node to `query`, a node recorded on the dock: the latest nodes matched together, or,
   /// if that is rejected, fewer and fewer of them. Where too little is seen to match, it is the dock's own place with
-  /// the reach of its contacts as two deviations. Counts the attempt.
+  /// the reach of its contacts as two deviations. Counts the attempt, and charges its work.
   std::optional<Closure> find(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
-                              ClosureCounts& counts) const;
+                              ClosureCounts& counts, WorkMeter* meter = nullptr) const;
 
  private:
   std::optional<Closure> match(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
-                               const DockPlace& dock, std::size_t query_size, Rejection& rejection) const;
+                               const DockPlace& dock, std::size_t query_size, Rejection& rejection,
+                               WorkMeter* meter) const;
 
   DockGraphBuilderParameters parameters_;
   frsm::TableParams table_;
   frsm::ContourParams contours_;
   frsm::Matcher matcher_;
+  Eigen::Matrix3d error_;  // of a match, beyond its own covariance
 };
 
 }  // namespace oort

@@ -42,7 +42,8 @@ FrsmLoopMatcher::FrsmLoopMatcher(const Parameters& parameters, const LoopScale& 
       submaps_(
           table_cache(scale.submap_nodes, LoopClosureTuning::kSubmapCacheBytes, table_, frsm::ContourParams::urg())),
       matcher_(loop_matcher_params(parameters.incremental_graph_builder.frsm_matcher, scale,
-                                   parameters_.fine_match_hitpct_threshold)) {}
+                                   parameters_.fine_match_hitpct_threshold)),
+      error_(scale.bend() + match_error(parameters.incremental_graph_builder.frsm_matcher)) {}
 
 bool FrsmLoopMatcher::is_small(const TrajectorySegments& segments, std::uint64_t candidate) const {
   return segments.neighborhood(candidate, scale_.submap_nodes).size() <=
@@ -89,7 +90,7 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const TrajectorySegment
   const frsm::Match fine = matcher_.match(
       *submap, points, rough.pose,
       {fine_xy, fine_xy, LoopClosureTuning::kFineThetaSteps * matcher_.params().theta_step}, &prior, on_lookups);
-  return {from_frsm(fine.pose), fine.covariance + scale_.bend(), fine.inlier_ratio,
+  return {from_frsm(fine.pose), fine.covariance + error_, fine.inlier_ratio,
           fine.inlier_ratio < parameters_.fine_match_hitpct_threshold ? Rejection::kFineHits : Rejection::kNone};
 }
 

@@ -26,6 +26,7 @@ class FrsmLoopMatcher : public LoopMatcher {
   frsm::TableParams table_;
   SubmapCache<frsm::Table> submaps_;
   frsm::Matcher matcher_;
+  Eigen::Matrix3d error_;  // of a match, beyond its own covariance
 };
 
 }  // namespace oort

@@ -38,13 +38,18 @@ void GlobalLane::advance(std::vector<NodeAddition> nodes, std::uint64_t units) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     settled_ = false;
-    if (!nodes.empty()) handovers_.push_back({granted_, std::move(nodes)});
+    if (!nodes.empty()) handovers_.push_back({granted_, std::move(nodes), std::nullopt});
     granted_before_ = granted_;
     granted_ += units;
   }
   if (!threaded_) return;
   if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
   changed_.notify_all();
+}
+
+void GlobalLane::request_dock(std::vector<NodeAddition> nodes, const std::vector<Location>& locations) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  handovers_.push_back({granted_, std::move(nodes), locations});
 }
 
 std::vector<Correction> GlobalLane::take_due() {
@@ -69,9 +74,7 @@ std::vector<Correction> GlobalLane::settle() {
   }
   rethrow();
   std::vector<Correction> rest = take_before(std::numeric_limits<std::uint64_t>::max());
-  for (const Handover& handover : handovers_) {
-    for (const NodeAddition& node : handover.nodes) slam_.add(node);
-  }
+  for (const Handover& handover : handovers_) hand_over(handover);
   handovers_.clear();
   done_ = std::max<std::uint64_t>(done_, granted_);  // idle time is no credit
   settled_ = true;
@@ -97,9 +100,9 @@ bool GlobalLane::can_begin() const {
 
 void GlobalLane::work_one_piece(std::unique_lock<std::mutex>& lock) {
   if (!slam_.has_work()) done_ = std::max<std::uint64_t>(done_, handovers_.front().at);
-  std::vector<NodeAddition> nodes;
+  std::vector<Handover> handovers;
   while (!handovers_.empty() && handovers_.front().at <= done_) {
-    for (NodeAddition& node : handovers_.front().nodes) nodes.push_back(std::move(node));
+    handovers.push_back(std::move(handovers_.front()));
     handovers_.pop_front();
   }
   busy_ = true;
@@ -107,7 +110,7 @@ void GlobalLane::work_one_piece(std::unique_lock<std::mutex>& lock) {
   std::optional<Correction> correction;
   std::exception_ptr error;
   try {
-    for (const NodeAddition& node : nodes) slam_.add(node);
+    for (const Handover& handover : handovers) hand_over(handover);
     if (slam_.has_work()) correction = slam_.work(meter_);
   } catch (...) {
     error = std::current_exception();
@@ -117,6 +120,12 @@ void GlobalLane::work_one_piece(std::unique_lock<std::mutex>& lock) {
   work_seconds_ = slam_.work_seconds();
   error_ = error;
   busy_ = false;
+}
+
+/// Of whoever may call slam_.
+void GlobalLane::hand_over(const Handover& handover) {
+  for (const NodeAddition& node : handover.nodes) slam_.add(node);
+  if (handover.docks) slam_.request_dock(*handover.docks);
 }
 
 /// Until no result with less counted work can come any more.

@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -38,6 +39,10 @@ class GlobalLane {
   /// After a scan: hands over the nodes that it made, and grants work.
   void advance(std::vector<NodeAddition> nodes, std::uint64_t units);
 
+  /// Between scans: hands over the node that a call made, if it made one, and asks for the newest node to be linked to
+  /// the dock. The work begins with the next scan's grant.
+  void request_dock(std::vector<NodeAddition> nodes, const std::vector<Location>& locations);
+
   /// Before a scan: the corrections that take effect now, in their order. Rethrows what global SLAM threw.
   std::vector<Correction> take_due();
 
@@ -63,6 +68,7 @@ class GlobalLane {
   struct Handover {
     std::uint64_t at;  // work counted when the nodes came
     std::vector<NodeAddition> nodes;
+    std::optional<std::vector<Location>> docks;  // a request for the dock, after the nodes
   };
   struct Result {
     std::uint64_t at;
@@ -76,6 +82,7 @@ class GlobalLane {
   std::vector<Correction> take_before(std::uint64_t work);
   void rethrow();
 
+  void hand_over(const Handover& handover);
   void run();
 
   GlobalSlam slam_;  // of whoever holds the mutex or does a piece of work

@@ -19,6 +19,7 @@ void GlobalSlam::set_map(const Map& map) {
   map_.set_map(map);
   make_dock_closures_firm(map_.edit(), parameters_.dock_graph_builder.closure_firmness);
   begin_session();
+  dock_requests_.clear();
   schedule_ = SolveSchedule();
   schedule_.solved_all(map_.node_count());
   is_on_.clear();
@@ -36,12 +37,17 @@ void GlobalSlam::add(const NodeAddition& node) {
   map_.add(node);
 }
 
+void GlobalSlam::request_dock(const std::vector<Location>& locations) {
+  dock_requests_.push_back({map_.node_count() - 1, locations});
+}
+
 bool GlobalSlam::has_work() const {
-  return !not_looked_from_.empty() || loops_.has_work() ||
+  return !dock_requests_.empty() || !not_looked_from_.empty() || loops_.has_work() ||
          schedule_.due(map_.node_count(), map_.node_count()) != SolveSchedule::Extent::kNothing;
 }
 
 Correction GlobalSlam::work(WorkMeter& meter) {
+  if (!dock_requests_.empty()) return link_docks(&meter);
   const SolveSchedule::Extent extent = schedule_.due(map_.node_count(), map_.node_count());
   if (extent != SolveSchedule::Extent::kNothing) {
     solve_due(extent, &meter);
@@ -51,14 +57,14 @@ Correction GlobalSlam::work(WorkMeter& meter) {
     const WorkClock clock(work_seconds_.candidates);
     loops_.look(map(), map_.segments(), not_looked_from_.front(), &meter);
     not_looked_from_.pop_front();
-    return {{}, std::nullopt, counts_, {}};
+    return {{}, std::nullopt, counts_, {}, {}};
   }
   const WorkClock clock(work_seconds_.matching);
   return found(loops_.work(map(), map_.segments(), counts_.loops, closure_log_, &meter));
 }
 
 Correction GlobalSlam::finish() {
-  Correction all;
+  Correction all = link_docks();
   while (!not_looked_from_.empty() || loops_.has_work()) {
     if (!not_looked_from_.empty()) {
       loops_.look(map(), map_.segments(), not_looked_from_.front(), nullptr);
@@ -80,29 +86,37 @@ Correction GlobalSlam::finish() {
   return all;
 }
 
-Correction GlobalSlam::link_dock(const std::vector<Location>& locations) {
-  map_.edit().locations = locations;
-  std::optional<Closure> closure;
-  {
-    const WorkClock clock(work_seconds_.matching);
-    closure = docks_.find(map(), map_.segments(), map_.node_count() - 1, counts_.docks);
+Correction GlobalSlam::link_docks(WorkMeter* meter) {
+  Correction all;
+  for (; !dock_requests_.empty(); dock_requests_.pop_front()) {
+    const DockRequest& request = dock_requests_.front();
+    map_.edit().locations = request.locations;
+    std::optional<Closure> closure;
+    {
+      const WorkClock clock(work_seconds_.matching);
+      closure = docks_.find(map(), map_.segments(), request.node, counts_.docks, meter);
+    }
+    all.docked.push_back(closure.has_value());
+    if (!closure) continue;
+    found({*closure});
+    all.closures.push_back(*closure);
   }
-  if (!closure) return {{}, std::nullopt, counts_, {}};
-  found({*closure});
-  solve_anew(MapperTuning::kIterations);
-  Correction correction = solved();
-  correction.closures = {*closure};
-  return correction;
+  if (!all.closures.empty()) {
+    solve_anew(MapperTuning::kIterations, meter);
+    all.solution = map_.solution();
+  }
+  all.counts = counts_;
+  return all;
 }
 
 Correction GlobalSlam::found(const std::vector<Closure>& closures) {
   for (const Closure& closure : closures) schedule_.add_closure(map_.add(closure));
-  return {closures, std::nullopt, counts_, {}};
+  return {closures, std::nullopt, counts_, {}, {}};
 }
 
 Correction GlobalSlam::solved() {
   count_switches();
-  return {{}, map_.solution(), counts_, {}};
+  return {{}, map_.solution(), counts_, {}, {}};
 }
 
 void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {
@@ -123,12 +137,12 @@ bool GlobalSlam::solve_newest(WorkMeter* meter) {
 
 // Edges that an earlier false closure had switched off stay off, as nothing pulls at a switch that is 0. So the whole
 // graph is solved once more with all of them on, and the better of the two solutions counts.
-void GlobalSlam::solve_anew(int max_iterations) {
-  const double cost = solve(max_iterations, 0, nullptr).final_cost;
+void GlobalSlam::solve_anew(int max_iterations, WorkMeter* meter) {
+  const double cost = solve(max_iterations, 0, meter).final_cost;
   Graph& graph = map_.edit().graph;
   Graph kept = graph;
   for (SwitchableEdge& edge : graph.switchable_edges) edge.switch_value = 1.0;
-  if (solve(max_iterations, 0, nullptr).final_cost >= cost) graph = std::move(kept);
+  if (solve(max_iterations, 0, meter).final_cost >= cost) graph = std::move(kept);
   schedule_.solved_all(map_.node_count());
   count_switches();
 }

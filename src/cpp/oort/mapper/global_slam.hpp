@@ -26,6 +26,7 @@ struct Correction {
   GlobalCounts counts;  ///< since the beginning
   /// The clouds without what newer ones contradict, if anything was.
   std::optional<PointClouds> clouds;
+  std::vector<bool> docked;  ///< of requests for the dock, oldest first: whether a closure was found
 };
 
 /// Global SLAM: looks for loops, matches and confirms them, solves the graph. It works on a map of its own, to which
@@ -45,6 +46,9 @@ class GlobalSlam {
   /// A node's cloud with some readings taken out. What was drawn of it stays until begin_session().
   void replace_cloud(std::uint64_t node, PointClouds::Shared cloud) { map_.edit().clouds.set(node, std::move(cloud)); }
 
+  /// Notes that the newest node is at the dock and is to be linked to it. `locations` tell of docks.
+  void request_dock(const std::vector<Location>& locations);
+
   bool has_work() const;
   /// Does the next piece of work.
   Correction work(WorkMeter& meter);
@@ -52,9 +56,9 @@ class GlobalSlam {
   /// Works off all that was noted, solves with all that is known, and lets scans agree (refinement.hpp).
   Correction finish();
 
-  /// Links the newest node to the dock and solves. Without closures if what it sees does not fit. `locations` tell of
-  /// docks.
-  Correction link_dock(const std::vector<Location>& locations);
+  /// Works off the requests for the dock: links their nodes to it and solves. Without closures if what they see does
+  /// not fit.
+  Correction link_docks(WorkMeter* meter = nullptr);
 
   const Map& map() const { return map_.map(); }
   const GlobalCounts& counts() const { return counts_; }
@@ -63,11 +67,16 @@ class GlobalSlam {
   const ClosureLog& closure_log() const { return closure_log_; }
 
  private:
+  struct DockRequest {
+    std::uint64_t node;
+    std::vector<Location> locations;
+  };
+
   Correction found(const std::vector<Closure>& closures);
   Correction solved();
   void solve_due(SolveSchedule::Extent extent, WorkMeter* meter);
   bool solve_newest(WorkMeter* meter);
-  void solve_anew(int max_iterations);
+  void solve_anew(int max_iterations, WorkMeter* meter = nullptr);
   OptimizerSummary solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter);
   void count_switches();
   /// The nodes before it keep their poses.
@@ -80,7 +89,8 @@ class GlobalSlam {
   SolveSchedule schedule_;
   std::deque<std::uint64_t> not_looked_from_;  // nodes for which no candidates were looked for yet
   std::uint64_t session_begin_ = 0;            // the session's first node
-  std::vector<bool> is_on_;                    // each switchable edge, at the last solution
+  std::deque<DockRequest> dock_requests_;
+  std::vector<bool> is_on_;  // each switchable edge, at the last solution
   GlobalCounts counts_;
   ClosureLog closure_log_;
   WorkSeconds work_seconds_;

@@ -3,6 +3,7 @@
 #include "oort/mapper/mapper.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -56,24 +57,42 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, con
   return told;
 }
 
-bool Mapper::notify_docked() {
+void Mapper::request_dock_closure() {
   if (!has_pose()) {
     throw StateError(
         "Mapper.notify_docked: no scan has been mapped yet, so there is nothing to link; drive and scan first");
   }
-  take_effect(lane_->settle());
-  if (const std::optional<TrajectoryNode> node = local_.make_node()) {
-    add(*node);
-    lane_->slam().add(node->addition);
+  const bool parked = dock_request_ && is_parked_at(dock_request_->node);
+  if (parked && (dock_request_->open > 0 || dock_request_->found)) return;
+  std::vector<NodeAddition> nodes;
+  if (!parked) {
+    if (std::optional<TrajectoryNode> node = local_.make_node()) {
+      add(*node);
+      nodes.push_back(std::move(node->addition));
+    }
   }
-  const Correction correction = lane_->slam().link_dock(map().locations);
-  take_effect({correction});
-  return !correction.closures.empty();
+  const std::size_t open = dock_request_ ? dock_request_->open : 0;
+  dock_request_ = DockRequest{local_.newest_node(), open + 1, false};
+  lane_->request_dock(std::move(nodes), map().locations);
+}
+
+std::optional<bool> Mapper::dock_closure_found() const {
+  if (!dock_request_ || dock_request_->open > 0) return std::nullopt;
+  return dock_request_->found;
+}
+
+bool Mapper::notify_docked() {
+  request_dock_closure();
+  take_effect(lane_->settle());
+  take_effect({lane_->slam().link_docks()});
+  return dock_closure_found().value_or(false);
 }
 
 std::vector<std::uint64_t> Mapper::begin_session(const Pose2& T_map_sensor) {
   check_reach(T_map_sensor, "Mapper.begin_session: the start pose");
   take_effect(lane_->settle());
+  take_effect({lane_->slam().link_docks()});  // while nodes have the ids that it was asked of
+  dock_request_.reset();
   std::vector<std::uint64_t> carriers = prune();
   lane_->slam().begin_session();
   session_begin_ = map_.node_count();
@@ -136,6 +155,7 @@ void Mapper::use(const Map& map) {
   map_.set_map(lane_->slam().map());
   global_counts_ = lane_->slam().counts();
   session_begin_ = map_.node_count();
+  dock_request_.reset();
 }
 
 Pose2 Mapper::sensor_pose() const {
@@ -204,6 +224,10 @@ bool Mapper::take_effect(const std::vector<Correction>& corrections) {
     solved = solved || correction.solution.has_value();
     closed = closed || !correction.closures.empty();
     global_counts_ = correction.counts;
+    for (const bool found : correction.docked) {
+      --dock_request_->open;
+      dock_request_->found = found;
+    }
   }
   if (solved && map_.node_count() > 0) {
     tracking_.look_for_tie(map().graph, map_.segments().segment_begin(map_.node_count() - 1));
@@ -216,6 +240,13 @@ void Mapper::add(const TrajectoryNode& node) {
     tracking_.add_untied(map_.node_count(), node.attachment == Attachment::kGuess);
   }
   map_.add(node.addition);
+}
+
+/// Whether the sensor is still where that node, the newest, was made.
+bool Mapper::is_parked_at(std::uint64_t node) const {
+  const Pose2 moved = local_.T_newest_sensor();
+  return local_.newest_node() == node && moved.translation().norm() < MapperTuning::kParkedDistance &&
+         std::abs(moved.theta) < MapperTuning::kParkedAngle;
 }
 
 void Mapper::count_tracking(TrackingState state) {

@@ -63,8 +63,13 @@ class Mapper {
     local_.remember(T_base_sensor, scan, T_odom_base, sweep_of_base);
   }
 
-  /// Says that the robot stands at the dock now: makes a node of the last scan and links it to the dock's node.
-  /// Returns whether a closure was found. Throws StateError if there is no scan yet.
+  /// Says that the robot stands at the dock now: makes a node of the last scan and has global SLAM link it to the
+  /// dock's node, beside the scans to come; finish() does it at the latest. A robot that did not move since it was
+  /// linked is linked already. Throws StateError if there is no scan yet.
+  void request_dock_closure();
+  /// What came of the last request: whether a closure was found. None without one, or while it is looked for.
+  std::optional<bool> dock_closure_found() const;
+  /// Does both at once: asks, and waits for global SLAM.
   bool notify_docked();
 
   /// The next scan begins a new segment at about this pose of the map. A map that shows most of its places more often
@@ -109,11 +114,17 @@ class Mapper {
   const ClosureLog& closure_attempts() const;
 
  private:
+  struct DockRequest {
+    std::uint64_t node;
+    std::size_t open;  // requests that nothing came of yet
+    bool found;        // what came of the last
+  };
   std::vector<std::uint64_t> prune();
   void use(const Map& map);
   bool take_effect(const std::vector<Correction>& corrections);
   void add(const TrajectoryNode& node);
   bool remove_body();
+  bool is_parked_at(std::uint64_t node) const;
   void count_tracking(TrackingState state);
   std::uint64_t work_granted(double time);
   ScanResult result(ScanOutcome outcome) const;
@@ -126,6 +137,7 @@ class Mapper {
   TrackingState tracking_state_ = TrackingState::kTracking;
   TrackingCounts tracking_counts_;
   GlobalCounts global_counts_;
+  std::optional<DockRequest> dock_request_;
   WorkSeconds work_seconds_;    // of the local lane
   double last_time_ = 0.0;      // stamp of the last scan [s]
   double last_interval_ = 0.0;  // between it and the one before [s]

@@ -16,6 +16,11 @@ struct MapperTuning {
   static constexpr double kMinInterval = 0.02;  ///< [s]
   static constexpr double kMaxInterval = 0.5;   ///< [s]
 
+  // Motion since the dock was linked within which the robot is still parked there: scans differ by less while it
+  // stands.
+  static constexpr double kParkedDistance = 0.03;  ///< [m]
+  static constexpr double kParkedAngle = 0.03;     ///< [rad]
+
   // Iterations of a solve.
   static constexpr int kIterations = 15;        ///< while mapping or merging: the poses start near the optimum
   static constexpr int kFinalIterations = 100;  ///< when mapping stops

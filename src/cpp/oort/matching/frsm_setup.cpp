@@ -18,4 +18,8 @@ frsm::MatcherParams matcher_params(const FrsmMatcherParameters& p) {
   return params;
 }
 
+Eigen::Matrix3d match_error(const FrsmMatcherParameters& p) {
+  return Eigen::Vector3d(p.match_error_xy, p.match_error_xy, p.match_error_theta).cwiseAbs2().asDiagonal();
+}
+
 }  // namespace oort

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <frsm/contours.hpp>
 #include <frsm/matcher.hpp>
 #include <frsm/table.hpp>
@@ -13,5 +14,7 @@ namespace oort {
 
 frsm::TableParams table_params(const FrsmMatcherParameters& p);
 frsm::MatcherParams matcher_params(const FrsmMatcherParameters& p);
+/// Covariance of a match beyond what the shape of its score shows.
+Eigen::Matrix3d match_error(const FrsmMatcherParameters& p);
 
 }  // namespace oort

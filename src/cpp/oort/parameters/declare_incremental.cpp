@@ -54,6 +54,11 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
     "Log-likelihood of one point that lies on the map: how much a match counts against what odometry expects. Low, so "
     "that a narrow view that fits well somewhere else is not believed.")
       .own(1.0);
+  v(p.match_error_xy, "match_error_xy", {0.0, "m", {0.0, 1.0}},
+    "Standard deviation of x and y of a match beyond what the shape of its score shows, of nodes and of closures.")
+      .own(0.012, "Covariances follow from the scores and from what is said to be bent.");
+  v(p.match_error_theta, "match_error_theta", {0.0, "rad", {0.0, 1.0}}, "The same of its heading.")
+      .own(0.0306, "As match_error_xy. The map that the original saved has 0.001 rad^2 for each match.");
 }
 
 void declare_odometry_noise(const Section& v, OdometryNoiseParameters& p) {

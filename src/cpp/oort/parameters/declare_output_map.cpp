@@ -33,6 +33,12 @@ void declare_output_map(const Section& v, OutputMapParameters& p) {
 
   v(p.robot_radius, "robot_radius", {0.15, "m", {0.0, 5.0}},
     "A disc of this radius is set free around every node, which keeps doorways open; 0: none.");
+  v(p.footprint_x, "footprint_x", {0.0, "m", {-5.0, 5.0}},
+    "Where the disc's centre is, seen from the sensor: ahead of it. For a disc around the base: where the base is.")
+      .own(0.0);
+  v(p.footprint_y, "footprint_y", {0.0, "m", {-5.0, 5.0}}, "The same to its left.").own(0.0);
+  v(p.clean_map, "clean_map", false, "Whether speckle is removed from `map`, too, and not from `map_cleaned` alone.")
+      .own(false);
   v(p.speckle_strategy, "speckle_strategy", {"median", {"median", "morphological"}},
     "How speckle is removed from the cleaned map.");
 

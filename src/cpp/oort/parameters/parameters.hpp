@@ -38,6 +38,9 @@ struct OutputMapParameters {
   OutputGridParameters probability_grid;
   ThresholdParameters threshold;
   double robot_radius;
+  double footprint_x;
+  double footprint_y;
+  bool clean_map;
   std::string speckle_strategy;
   MorphologicalParameters morphological;
   MedianParameters median;
@@ -87,6 +90,8 @@ struct FrsmMatcherParameters {
   double max_point_range;
   double heading_error_per_meter;
   double information_scale;
+  double match_error_xy;
+  double match_error_theta;
   double scanmatch_cov_scale;
   double inflate_scanmatch_cov_scale;
   double resume_scanmatch_cov_scale;

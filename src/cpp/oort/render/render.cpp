@@ -26,10 +26,17 @@ void check_input(const std::vector<Node>& nodes, const PointClouds& clouds) {
   }
 }
 
+/// The centre of the disc that is free around a node.
+Eigen::Vector2d footprint_of(const Node& node, const OutputMapParameters& parameters) {
+  if (parameters.footprint_x == 0.0 && parameters.footprint_y == 0.0) return node.pose.translation();
+  return (node.pose * Pose2{parameters.footprint_x, parameters.footprint_y, 0.0}).translation();
+}
+
 /// What one node and its cloud need of the grid.
 Eigen::AlignedBox2d box_of(const Node& node, const PointCloud& cloud, const OutputMapParameters& parameters) {
-  const Eigen::Vector2d footprint = Eigen::Vector2d::Constant(parameters.robot_radius);
-  Eigen::AlignedBox2d box(node.pose.translation() - footprint, node.pose.translation() + footprint);
+  const Eigen::Vector2d centre = footprint_of(node, parameters);
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(parameters.robot_radius);
+  Eigen::AlignedBox2d box(centre - reach, centre + reach);
   for (const BeamEnd& end : beam_ends(cloud, node.pose, parameters.probability_grid)) box.extend(end.point);
   return box;
 }
@@ -86,14 +93,14 @@ OccupancyGrid threshold(const ProbabilityGrid& grid, const OutputMapParameters& 
   return map;
 }
 
-/// Sets the cells around each node free. The node's cell is found by rounding, as the original does, not by flooring.
-void clear_footprints(const std::vector<Node>& nodes, double robot_radius, const GridLimits& limits,
+/// Sets the cells around each node free. The disc's cell is found by rounding, as the original does, not by flooring.
+void clear_footprints(const std::vector<Node>& nodes, const OutputMapParameters& parameters, const GridLimits& limits,
                       OccupancyGrid& map) {
-  const double radius = robot_radius / limits.resolution;
+  const double radius = parameters.robot_radius / limits.resolution;
   const double limit = radius * radius * (1.0 + 1e-9);  // 0.15 / 0.05 is a little below 3
   const int reach = static_cast<int>(std::ceil(radius));
   for (const Node& node : nodes) {
-    const Eigen::Vector2d centre = limits.to_cells(node.pose.translation()).array().round();
+    const Eigen::Vector2d centre = limits.to_cells(footprint_of(node, parameters)).array().round();
     for (int dy = -reach; dy <= reach; ++dy) {
       for (int dx = -reach; dx <= reach; ++dx) {
         const int column = static_cast<int>(centre.x()) + dx;
@@ -110,6 +117,9 @@ void clear_footprints(const std::vector<Node>& nodes, double robot_radius, const
 
 RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, const OutputMapParameters& parameters) {
   check_input(nodes, clouds);
+  if (!std::isfinite(parameters.footprint_x) || !std::isfinite(parameters.footprint_y)) {
+    throw ParameterError("output_map: footprint_x and footprint_y must be finite");
+  }
   if (!(parameters.robot_radius >= 0.0) || !std::isfinite(parameters.robot_radius)) {
     throw ParameterError("output_map: robot_radius must be a distance in metres, not " +
                          std::to_string(parameters.robot_radius));
@@ -122,10 +132,10 @@ RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, co
   ProbabilityGrid grid(limits_of(nodes, clouds, parameters));
   for (std::size_t k = 0; k < nodes.size(); ++k) inserter.insert(clouds[k], nodes[k].pose, grid);
   OccupancyGrid map = threshold(grid, parameters);
-  clear_footprints(nodes, parameters.robot_radius, grid.limits(), map);
+  clear_footprints(nodes, parameters, grid.limits(), map);
   OccupancyGrid map_cleaned = remove_speckles(map, parameters);
-  clear_footprints(nodes, parameters.robot_radius, grid.limits(),
-                   map_cleaned);  // filtering must not close the way again
+  clear_footprints(nodes, parameters, grid.limits(), map_cleaned);  // filtering must not close the way again
+  if (parameters.clean_map) map = map_cleaned;
   return {std::move(map), std::move(map_cleaned)};
 }
 

@@ -20,7 +20,8 @@ struct RenderedMap {
 /// Draws the map that the clouds show from their nodes' poses.
 ///
 /// Each cloud goes once into a probability grid, in the order of the nodes; the thresholds turn it into free, occupied
-/// and unknown cells; a disc of robot_radius around each node is set free. The grid's upper right corner is that of the
+/// and unknown cells; a disc of robot_radius around each node, or around
+/// footprint_x and _y seen from it, is set free. The grid's upper right corner is that of the
 /// box around all hits, which is widened where a node or a cleared stretch lies outside it.
 ///
 /// `clouds[k]` was taken at `nodes[k]`, in the sensor's frame. No nodes give empty grids (width and height 0).

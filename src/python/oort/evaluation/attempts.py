@@ -8,16 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from oort._core import Map
+from oort._core import SWITCH_ON, Map
 from oort.export.files import write_atomically
 from oort.recording import Pose
 
 ACCEPTED, CONTRADICTED = "accepted", "contradicted"
 MOST = 200_000
 """attempts that are kept at most: the newest; some 30 MB"""
-
-SWITCHED_ON = 0.5
-"""A closure whose switch is below is off: closer to 0, off, than to 1."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +40,7 @@ def judge_attempts(told: Sequence[tuple[int, int, str | None, Pose, float]], map
     attempts = []
     for query, candidate, rejection, pose, hits in told:
         switch = None if rejection is not None else switches[query, candidate]
-        accepted = CONTRADICTED if switch is not None and switch < SWITCHED_ON else ACCEPTED
+        accepted = CONTRADICTED if switch is not None and switch < SWITCH_ON else ACCEPTED
         attempts.append(Attempt(query, candidate, rejection or accepted, pose, hits, switch))
     return attempts
 

@@ -13,12 +13,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from oort._core import Map
+from oort._core import SWITCH_ON, Map
 from oort.errors import InputError
 from oort.export.files import decimal, write_atomically
 from oort.poses import between, compose
-
-_SWITCHED_OFF = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +56,7 @@ def autogenerate_relations(
     limits = limits or RelationLimits()
     edges, poses = map_.switchable_edges, map_.node_poses
     ends = np.sort(np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64), axis=1)
-    on = edges["switch"] >= _SWITCHED_OFF
+    on = edges["switch"] >= SWITCH_ON
     covered = _driven(map_)
     long = covered[ends[:, 1]] - covered[ends[:, 0]] >= limits.min_covered_distance
     off_by = between(edges["pose"], between(poses[edges["i"].astype(np.int64)], poses[edges["j"].astype(np.int64)]))

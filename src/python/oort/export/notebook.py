@@ -6,11 +6,8 @@ import base64
 
 import numpy as np
 
-from oort._core import Map, Parameters, render_map
+from oort._core import SWITCH_ON, Map, Parameters, render_map
 from oort.export.picture import draw_picture
-
-_SWITCHED_OFF = 0.5
-"""A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
 
 
 def map_png(map_: Map) -> bytes | None:
@@ -20,7 +17,7 @@ def map_png(map_: Map) -> bytes | None:
         return None
     edges, poses = map_.switchable_edges, map_.node_poses
     ends = np.stack([poses[edges["i"], :2], poses[edges["j"], :2]], axis=1)
-    on = edges["switch"] >= _SWITCHED_OFF
+    on = edges["switch"] >= SWITCH_ON
     places = ((f"{space}/{id}", map_.locate(space, id)) for space, id, *_ in map_.locations)
     return draw_picture(
         grid.cells,

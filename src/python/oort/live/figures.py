@@ -6,7 +6,7 @@ import enum
 import time
 from collections import Counter
 
-from oort._core import ScanResult
+from oort._core import ScanResult, TrackingState
 from oort.live.window import Rate, Window
 from oort.recording import Scan
 from oort.session import State
@@ -16,14 +16,14 @@ _OF_LATE = 5.0  # [s]
 _NEVER = float("-inf")
 
 
-class Tracking(enum.Enum):
+class Tracking(enum.StrEnum):
     """How well the robot's place is known: what the last scan's result says of it (docs/tracking.md), or idle."""
 
     IDLE = "idle"
     """nothing is being mapped"""
-    TRACKING = "tracking"
-    UNCERTAIN = "uncertain"
-    LOST = "lost"
+    TRACKING = TrackingState.TRACKING.value
+    UNCERTAIN = TrackingState.UNCERTAIN.value
+    LOST = TrackingState.LOST.value
 
 
 class Drops:

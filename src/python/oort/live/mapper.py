@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from oort._core import Map, Parameters, normalise_map_path
 from oort.errors import InputError, StateError
+from oort.live.figures import Tracking
 from oort.live.listener import Listener
 from oort.live.odometry import Odometry
 from oort.live.session import LiveSession
@@ -151,12 +152,14 @@ class LiveMapper:
             guessed=placement.guessed,
         )
 
-    def notify_docked(self) -> bool:
+    def notify_docked(self) -> bool | None:
         """Says that the robot stands at its dock; whether what it sees fits the dock. Raises StateError before a scan.
 
-        Comes in its turn, after the scans that were pushed before.
+        Comes in its turn, after the scans that were pushed before, and is worked on beside those that come after. None
+        if they stop coming first: then it is done when they go on, or by close().
         """
-        return bool(self._call("map/notify_docked"))
+        found = self._call("map/notify_docked")
+        return None if found is None else bool(found)
 
     def pause(self) -> None:
         """Takes no scans until resume_from_paused(): the robot is moved."""
@@ -191,9 +194,9 @@ class LiveMapper:
         return self._live.snapshot.odom_pose
 
     @property
-    def tracking(self) -> str:
-        """How well the robot's place is known: "tracking", "uncertain", "lost", or "idle" where no scan tells."""
-        return self._live.figures.tracking(self._live.snapshot.state).value
+    def tracking(self) -> Tracking:
+        """How well the robot's place is known."""
+        return self._live.figures.tracking(self._live.snapshot.state)
 
     @property
     def session(self) -> LiveSession:

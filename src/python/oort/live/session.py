@@ -10,7 +10,7 @@ from concurrent.futures import Future, wait
 from typing import Any, TypeVar
 
 from oort import history
-from oort._core import Map, Parameters, Saved, ScanResult
+from oort._core import Map, Parameters, Saved, ScanOutcome, ScanResult
 from oort.diagnosis import Trouble
 from oort.errors import StateError
 from oort.events import SCAN, EventLog, scan_entry
@@ -37,6 +37,7 @@ _SHOW_MAP = (_LOAD, _RESUME, _REJECT, _STOP, _REDRAW)
 _BACKWARDS = 1.0  # [s]; a scan that is older than the last one by more says that the clock was set back
 _LOOK_EVERY = 100  # scans, between looks for what is wrong with the setup
 _IDLE = 0.2  # [s] between looks at the clock when nothing comes
+_SILENCE = 1.0  # [s] without a scan: none are arriving
 _CLOSING = 5.0  # [s] for what is ready in the queue when the session is closed
 
 _Result = TypeVar("_Result")
@@ -81,6 +82,7 @@ class LiveSession:
         self._snapshot = Snapshot()
         self._mount: Pose | None = None  # not yet told to the session
         self._saves: list[Future[Saved]] = []  # of the call that is being made
+        self._docking: Future[bool] | None = None  # until it is known what came of the last notify_docked
         self._reported_frame: Pose | None = None  # seen from the frame of the latest scan's odometry
         self._last_scan_time = -math.inf
         self._closing = False
@@ -117,7 +119,9 @@ class LiveSession:
     def call(self, name: str, args: Sequence[Any] = ()) -> Any:
         """Makes a call of Session in its turn; returns when it took effect, was saved and, where it shows, drawn.
 
-        Raises StateError or MapFileError if the call cannot be made or its result not be saved.
+        notify_docked waits on, while scans come, until it is known whether what is seen fits the dock; None if that is
+        not known when scans stop. Raises StateError or MapFileError if the call cannot be made or its result not be
+        saved.
         """
         if name in (_START, _RESUME, _LOAD) and args:
             check_absolute(self._naming(name), args[0])
@@ -126,7 +130,15 @@ class LiveSession:
             wait([answer.drawing])
         for save in answer.saves:
             save.result()
-        return answer.result
+        return self._await(answer.result) if isinstance(answer.result, Future) else answer.result
+
+    def _await(self, docking: "Future[bool]") -> bool | None:
+        """What came of looking for the dock: scans go on meanwhile, and without them so does nothing."""
+        while not wait([docking], _IDLE).done:
+            silent = len(self.inbox) == 0 and self.figures.seconds_without_scan > _SILENCE
+            if silent or self._closing or self._snapshot.state is not State.MAPPING:
+                return docking.result() if docking.done() else None
+        return docking.result()
 
     def run(self, work: Callable[[Session], _Result]) -> _Result:
         """Does something with the session that changes no map, in its turn; returns when what it saved is on the disk.
@@ -205,6 +217,7 @@ class LiveSession:
             return
         if item.scan.mount is not None:  # it joins the main laser's next
             return
+        self._look_at_dock()
         self.figures.mapped(result, time.monotonic() - started, item.scan)
         self._listener.scan_taken(self._snapshot)
         self._look_for_troubles(item.scan)
@@ -236,7 +249,7 @@ class LiveSession:
         self.figures.last_stamp = scan.stamp
         self._reported_frame = scan.reported_frame
         self._log(scan.time, SCAN, scan_entry(scan))
-        if result is not None and result.outcome == "node":
+        if result is not None and result.outcome is ScanOutcome.NODE:
             self.keeper.changed()
             self._snapshot = look_at(self._session, self._snapshot, self._reported_frame, map_changed=True)
         else:
@@ -269,11 +282,9 @@ class LiveSession:
             self.keeper.settle(self._session)
         self._saves = []
         result = self._result(name, args)
-        was_pruned = self._session.mapper.num_nodes < before.num_nodes
-        changed = name in _CHANGE_MAP or was_pruned
-        self._snapshot = look_at(self._session, before, self._reported_frame, map_changed=changed)
+        self._snapshot = look_at(self._session, before, self._reported_frame, map_changed=name in _CHANGE_MAP)
         saves, self._saves = self._saves, []
-        self._follow_up(name, result, before)
+        self._follow_up(name, before)
         self._listener.call_made(self._snapshot)
         drawing = None
         if self.draws and name in _SHOW_MAP and self._snapshot.num_nodes > 0:
@@ -283,9 +294,27 @@ class LiveSession:
     def _result(self, name: str, args: Sequence[Any]) -> Any:
         if name == _REDRAW:
             return None
-        return args[0](self._session) if name == _WORK else self._call(name, args)
+        if name == _WORK:
+            return args[0](self._session)
+        result = self._call(name, args)
+        if name == _DOCKED:
+            self._docking = result = self._docking or Future()
+        self._look_at_dock(forgotten=name in (_LOAD, _CLEAR, _REJECT))
+        return result
 
-    def _follow_up(self, name: str, result: Any, before: Snapshot) -> None:
+    def _look_at_dock(self, forgotten: bool = False) -> None:
+        """Tells who waits for it what came of notify_docked; ``forgotten``: nothing will."""
+        if self._docking is None:
+            return
+        found = self._session.mapper.dock_closure_found
+        if found is None and not forgotten:
+            return
+        if found is False:
+            self._listener.trouble(f"{self._naming(_DOCKED)}: nothing was linked: what is seen does not fit the dock")
+        self._docking.set_result(bool(found))
+        self._docking = None
+
+    def _follow_up(self, name: str, before: Snapshot) -> None:
         """What a call means beyond the session itself."""
         if name in (_LOAD, _CLEAR, _REJECT):
             self.keeper.forget()
@@ -296,8 +325,6 @@ class LiveSession:
             self.keeper.hurry()
         if name in (_START, _DOCKED):
             self.keeper.changed()
-        if name == _DOCKED and not result:
-            self._listener.trouble(f"{self._naming(_DOCKED)}: nothing was linked: what is seen does not fit the dock")
         if name == _STOP and before.waiting:
             places = ", ".join(f"{space!r}/{id!r}" for space, id in sorted(before.waiting))
             self._listener.trouble(

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from oort._core import LocalizationState
 from oort.localization import Localizer
 from oort.node.diagnostics import WARN, Health, Problem, number
 from oort.recording import Pose
@@ -18,8 +19,8 @@ from oort.recording import Pose
 class Sighting:
     """What a localiser said after a scan; another thread may read it while the next scan is worked on."""
 
-    state: str = ""
-    """searching, tracking, uncertain or lost; empty before the first scan"""
+    state: LocalizationState | None = None
+    """None before the first scan"""
     support: float | None = None
     T_map_sensor: Pose | None = None
     T_map_odom: Pose | None = None
@@ -64,14 +65,16 @@ class LocalizerHealth(Health):
         """The sentence when nothing is wrong."""
         if self.told_by_other:
             return "Another program tells map -> odom"
-        return "Tracking" if self.last.state == "tracking" else "Uncertain; the map is searched meanwhile"
+        return (
+            "Tracking" if self.last.state == LocalizationState.TRACKING else "Uncertain; the map is searched meanwhile"
+        )
 
     def problems(self) -> Iterator[Problem]:
         """What is wrong; a place that another program tells is not missed."""
         yield from self.problems_of_input()
-        if self.last.state == "lost" and not self.told_by_other:
+        if self.last.state == LocalizationState.LOST and not self.told_by_other:
             yield WARN, "The place is lost; drive slowly to where more is in view, or tell the place on initialpose"
-        if self.last.state == "searching" and not self.told_by_other:
+        if self.last.state == LocalizationState.SEARCHING and not self.told_by_other:
             rejections = _by_reason(self.last.statistics["search_rejections"])
             yield WARN, f"The place is not found yet ({rejections}); drive on, or tell it on initialpose"
         yield from self.problems_of_queue()

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import String
 
-from oort._core import Map, Parameters, normalise_map_path, render_map
+from oort._core import LocalizationState, Map, Parameters, normalise_map_path, render_map
 from oort.errors import InputError, StateError
 from oort.image_maps import open_reference_map
 from oort.live.figures import Figures
@@ -95,7 +95,7 @@ class LocalizerNode:
             threading.Thread(target=repeat, args=(self._is_running, period, work), daemon=True).start()
         middleware.serve("~map/load", "SetString", lambda request: self._call("load", request.data))
         middleware.serve("~relocalize", "Empty", lambda _: self._call("relocalize"))
-        middleware.serve("~is_localized", "GetBool", lambda _: {"data": self._last.state == "tracking"})
+        middleware.serve("~is_localized", "GetBool", lambda _: {"data": self._last.state == LocalizationState.TRACKING})
         if middleware.ros == 2:
             self._offer_conventions()
 
@@ -150,7 +150,7 @@ class LocalizerNode:
 
     def _save_pose(self) -> None:
         """Keeps the pose for the next start, if it can be relied on."""
-        if self._last.state == "tracking" and self._last.T_map_sensor is not None:
+        if self._last.state == LocalizationState.TRACKING and self._last.T_map_sensor is not None:
             self._last_pose.write(self._last.T_map_sensor)
 
     # ---- what comes in ----
@@ -296,7 +296,7 @@ class LocalizerNode:
         """map -> odom, dated one period ahead; nothing while lost, or while another program tells it."""
         with self._tf_lock:
             last = self._last
-            pose = None if last.state == "lost" else last.T_map_odom
+            pose = None if last.state == LocalizationState.LOST else last.T_map_odom
             stamp = self._middleware.now() + round(1e9 * _TF_PERIOD)
             silent = not self._active or self._transforms.is_localised()
             if pose is None or stamp == self._last_tf or silent:

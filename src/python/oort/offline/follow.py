@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from oort._core import Map, Parameters
+from oort._core import LocalizationState, Map, Parameters
 from oort.errors import InputError
 from oort.localization import Localizer, start_covariance
 from oort.poses import compose
@@ -20,7 +20,7 @@ from oort.report.stopwatch import Stopwatch
 class Stretch:
     """Consecutive scans in one state of the localiser."""
 
-    state: str
+    state: LocalizationState
     begin: str
     """stamp of the first scan [s]"""
     end: str
@@ -40,7 +40,7 @@ class LocalizedDrive:
     """T_map_base"""
     deviations: list[float] = field(default_factory=list)
     """largest standard deviation of the position [m]"""
-    states: list[str] = field(default_factory=list)
+    states: list[LocalizationState] = field(default_factory=list)
     stretches: list[Stretch] = field(default_factory=list)
     """of all scans, those without a pose too"""
     recorded_seconds: float = 0.0

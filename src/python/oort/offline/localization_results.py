@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from oort._core import Map, Parameters
+from oort._core import LocalizationState, Map, Parameters
 from oort.export import write_picture, write_tum
 from oort.export.files import write_atomically
 from oort.offline.drawing import draw_map
@@ -45,7 +45,7 @@ def _report(drive: LocalizedDrive, map_path: str, parameters: Parameters) -> dic
         "recorded_seconds": drive.recorded_seconds,
         **drive.localizer.statistics,
         "scans_with_pose": len(drive.stamps),
-        "states": {state: n for state in ("searching", "tracking", "uncertain", "lost") if (n := _count(drive, state))},
+        "states": {state: n for state in LocalizationState if (n := _count(drive, state))},
         "stretches": [{"state": s.state, "begin": s.begin, "end": s.end, "scans": s.scans} for s in drive.stretches],
         "position_deviation": {
             "median": round(float(np.median(deviations)), 4),
@@ -56,7 +56,7 @@ def _report(drive: LocalizedDrive, map_path: str, parameters: Parameters) -> dic
     }
 
 
-def _count(drive: LocalizedDrive, state: str) -> int:
+def _count(drive: LocalizedDrive, state: LocalizationState) -> int:
     return sum(stretch.scans for stretch in drive.stretches if stretch.state == state)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from oort._core import (
+    SWITCH_ON,
     Map,
     Merged,
     OccupancyGrid,
@@ -26,8 +27,6 @@ from oort.saved_maps import open_map
 __all__ = ["Merged", "merge", "merge_maps"]
 
 _FOUND_BY = {"given": "where --at says", "dock": "at the dock", "search": "by a search of the whole map"}
-_SWITCHED_OFF = 0.5
-"""A switch below this counts as rejected by the solution: it is closer to 0, off, than to 1."""
 
 
 def merge(
@@ -99,7 +98,7 @@ def _draw(path: str, merged: Merged, map_: Map, grid: OccupancyGrid) -> bool:
     edges, poses = map_.switchable_edges, map_.node_poses
     across = (edges["i"] < merged.first_node_b) != (edges["j"] < merged.first_node_b)
     ends = np.stack([poses[edges["i"], :2], poses[edges["j"], :2]], axis=1)
-    on = edges["switch"] >= _SWITCHED_OFF
+    on = edges["switch"] >= SWITCH_ON
     places = [(f"{space}/{id}", compose(poses[node], pose).tolist()) for space, id, node, pose in map_.locations]
     write_picture(
         path,

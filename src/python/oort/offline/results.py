@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from oort._core import Map, Mapper, OccupancyGrid, Parameters, save_map
+from oort._core import SWITCH_ON, Map, Mapper, OccupancyGrid, Parameters, save_map
 from oort.diagnosis import Trouble
-from oort.evaluation.attempts import SWITCHED_ON, judge_attempts, write_attempts
+from oort.evaluation.attempts import judge_attempts, write_attempts
 from oort.evaluation.histograms import make_histograms, panels
 from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
 from oort.export.chart import write_chart
@@ -101,7 +101,7 @@ def _write_pictures(
 ) -> None:
     origin = (*grid.origin, 0.0)
     closures = _closure_ends(map_)
-    on = map_.switchable_edges["switch"] >= SWITCHED_ON
+    on = map_.switchable_edges["switch"] >= SWITCH_ON
     outputs.write("map.pgm map.yaml", lambda: write_map_server(out / "map", grid.cells, grid.resolution, origin))
     outputs.write(
         "map.png",
@@ -140,7 +140,7 @@ def _report(
             "height": 0 if grid is None else grid.height,
             "resolution": drive.parameters.get(_RESOLUTION) if grid is None else grid.resolution,
             "switchable_edges": len(map_.switchable_edges["switch"]),
-            "switched_off": int((map_.switchable_edges["switch"] < SWITCHED_ON).sum()),
+            "switched_off": int((map_.switchable_edges["switch"] < SWITCH_ON).sum()),
         },
         histograms,
         [trouble.to_dict() for trouble in drive.troubles],

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from oort._core import Map, ScanResult
+from oort._core import Map, ScanOutcome, ScanResult
 from oort.poses import between, compose
 from oort.recording import Pose
 
@@ -39,7 +39,7 @@ class TrajectoryRecorder:
         self._odometry.append(odometry)
         self._nodes.append(result.node_id if result is not None and result.node_id is not None else _NO_NODE)
         self._relative.append(result.T_node_sensor if result is not None and known else (0.0, 0.0, 0.0))
-        self._made_node.append(result is not None and result.outcome == "node")
+        self._made_node.append(result is not None and result.outcome == ScanOutcome.NODE)
 
     def forget_nodes(self) -> None:
         """The map was dropped or replaced: scans so far are placed by odometry from what comes."""

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from oort._core import Map, OccupancyGrid
-from oort.evaluation.attempts import SWITCHED_ON, Attempt
+from oort._core import SWITCH_ON, Map, OccupancyGrid
+from oort.evaluation.attempts import Attempt
 from oort.export.map_server import grey_picture
 from oort.poses import between, wrap_angle
 from oort.report.arrays import pack
@@ -75,7 +75,7 @@ def closure_layer(map_: Map, attempts: Sequence[Attempt]) -> dict[str, Any]:
     rejected = [a for a in attempts if a.switch is None]
     shown = sorted(rejected, key=lambda a: -a.inlier_ratio)[:MOST_REJECTED]
     verdicts = ["accepted", "undone", *sorted({a.verdict for a in shown})]
-    on = edges["switch"] >= SWITCHED_ON
+    on = edges["switch"] >= SWITCH_ON
     codes = [*np.where(on, 0, 1).tolist(), *(verdicts.index(a.verdict) for a in shown)]
     base = [*ends[:, 0].tolist(), *(a.candidate for a in shown)]
     moving = [*ends[:, 1].tolist(), *(a.query for a in shown)]

@@ -5,6 +5,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from oort._core import TrackingState
 from oort.recording import Recording
 
 REPORT_VERSION = 2
@@ -81,7 +82,7 @@ def _closures(counts: Mapping[str, Any]) -> str:
 
 
 def _tracking(scans: Mapping[str, int]) -> str:
-    states = ", ".join(f"{scans[state]} scans {state}" for state in ("tracking", "uncertain", "lost"))
+    states = ", ".join(f"{scans[state]} scans {state}" for state in TrackingState)
     return f"{states}; {scans['changes']} changes"
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from oort._core import ScanResult
+from oort._core import ScanResult, TrackingState
 
-TRACKING_STATES = ("tracking", "uncertain", "lost", "not mapped")
+TRACKING_STATES = (*(state.value for state in TrackingState), "not mapped")
 """in the order of severity; codes are places in it"""
 
 _NOT_MAPPED = len(TRACKING_STATES) - 1
