@@ -282,7 +282,9 @@ class LiveSession:
             self.keeper.settle(self._session)
         self._saves = []
         result = self._result(name, args)
-        self._snapshot = look_at(self._session, before, self._reported_frame, map_changed=name in _CHANGE_MAP)
+        was_pruned = self._session.mapper.num_nodes < before.num_nodes
+        changed = name in _CHANGE_MAP or was_pruned
+        self._snapshot = look_at(self._session, before, self._reported_frame, map_changed=changed)
         saves, self._saves = self._saves, []
         self._follow_up(name, before)
         self._listener.call_made(self._snapshot)
