@@ -252,12 +252,12 @@ def test_a_place_that_is_no_dock_is_told(live: LiveSession, recorder: Recorder) 
     driven(live, 1)
     live.places.create("dock", "dock")
     driven(live)
-    nothing = replace(room_scan(0.6, 0, 1.2, 7.0), ranges=room_scan(0, 0, 0, 0.0).ranges * float("nan"))
-    live.add_scan(lambda: nothing)
+    blind = room_scan(0, 0, 0, 0.0).ranges * float("nan")
+    live.add_scan(lambda: replace(room_scan(0.6, 0, 1.2, 7.0), ranges=blind))
     before = live.snapshot.closures
     live.call("map/notify_docked")
-    for _ in range(30):  # beside these it is looked for
-        live.add_scan(lambda: nothing)
+    for k in range(100):  # beside these it is looked for
+        live.add_scan(lambda k=k: replace(room_scan(0.6, 0, 1.2, 7.1 + 0.1 * k), ranges=blind))  # type: ignore[misc]
     until(lambda: len(recorder.troubles) > 0)
     assert live.snapshot.closures == before
     assert recorder.troubles[-1].startswith("map/notify_docked: nothing was linked")
@@ -267,7 +267,7 @@ def test_scans_are_mapped_while_the_dock_is_looked_for(live: LiveSession, record
     live.call("map/start", [""])
     driven(live, 1)
     live.places.create("dock", "dock")
-    poses = [(0.5 * math.sin(a), 0.7 * math.sin(2.0 * a)) for a in np.linspace(0.1, 2.0 * np.pi, 60).tolist()]
+    poses = [(0.5 * math.sin(a), 0.7 * math.sin(2.0 * a)) for a in np.linspace(0.1, 2.0 * np.pi, 60)[:-1]]
     for k, (x, theta) in enumerate(poses):  # to and fro, back to the dock
         live.add_scan(lambda x=x, theta=theta, k=k: room_scan(x, 0.0, theta, 1.0 + 0.1 * k))  # type: ignore[misc]
     until(lambda: len(live.inbox) == 0)

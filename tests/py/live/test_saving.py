@@ -135,7 +135,7 @@ def test_a_dock_is_saved(clocked: Clocked, tmp_path: Path) -> None:
     clocked.wait_for_autosave()
     live.call("map/notify_docked")
     before = live.snapshot.closures
-    for k in range(30):  # beside these it is linked
+    for k in range(100):  # beside these it is linked
         live.add_scan(lambda k=k: room_scan(0.0, 0.0, 0.0, 7.4 + 0.1 * k))  # type: ignore[misc]
     until(lambda: live.snapshot.closures > before)
     clocked.wait_for_autosave()

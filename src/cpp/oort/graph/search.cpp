@@ -128,8 +128,10 @@ void Search::find_best_start(const std::vector<std::size_t>& surprising) {
   for (auto k = surprising.rbegin(); k != surprising.rend() && tries < GraphTuning::kBelieved; ++k) {
     solver_.set_poses(best);
     if (2.0 * solver_.best_switch(links[*k], solver_.squared_error(links[*k])) > 1.0) continue;  // is on
-    max_iterations_ += GraphTuning::kBelievedSteps;
+    const int limit = max_iterations_, spent = iterations_;
+    max_iterations_ = spent + GraphTuning::kBelievedSteps;
     try_from(best, GraphTuning::kOffWhileSearching, {*k}, GraphTuning::kBelievedSteps);
+    max_iterations_ = limit + iterations_ - spent;  // what else there is to do has as many as without
     ++tries;
   }
   solver_.set_poses(std::move(best));

@@ -249,7 +249,7 @@ class LiveSession:
         self.figures.last_stamp = scan.stamp
         self._reported_frame = scan.reported_frame
         self._log(scan.time, SCAN, scan_entry(scan))
-        if result is not None and result.outcome is ScanOutcome.NODE:
+        if result is not None and (result.outcome is ScanOutcome.NODE or result.corrected):
             self.keeper.changed()
             self._snapshot = look_at(self._session, self._snapshot, self._reported_frame, map_changed=True)
         else:
