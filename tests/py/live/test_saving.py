@@ -137,7 +137,8 @@ def test_a_dock_is_saved(clocked: Clocked, tmp_path: Path) -> None:
     before = live.snapshot.closures
     for k in range(100):  # beside these it is linked
         live.add_scan(lambda k=k: room_scan(0.0, 0.0, 0.0, 7.4 + 0.1 * k))  # type: ignore[misc]
-    until(lambda: live.snapshot.closures > before)
+    until(lambda: len(live.inbox) == 0)
+    assert live.snapshot.closures > before
     clocked.wait_for_autosave()
     saved = load_map(path)
     assert len(saved) == live.snapshot.num_nodes

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from oort._core import Map
+from oort._core import SWITCH_ON, Map
 from oort.errors import StateError
-from oort.evaluation.attempts import SWITCHED_ON
 from oort.live import Drawing, LiveSession
 from oort.live.window import Window
 from oort.poses import compose
@@ -107,7 +106,7 @@ def _placed(scan: Scan, pose: np.ndarray[Any, np.dtype[np.float64]]) -> np.ndarr
 def _graph(drawing: Drawing) -> dict[str, Any]:
     map_: Map = drawing.map
     chain, loops = map_.edges, map_.switchable_edges
-    on = loops["switch"] >= SWITCHED_ON
+    on = loops["switch"] >= SWITCH_ON
     ends = np.stack([loops["i"], loops["j"]], axis=1).reshape(-1, 2)
     return {
         "nodes": pack(map_.node_poses[:, :2], "f4"),
