@@ -53,6 +53,7 @@ MEMBERS = {
     "Map.incremental_results": ARRAYS,
     "Map.loop_results": ARRAYS,
     "Map.clouds": "list[NDArray[np.float64]]",
+    "Map.loose_parts": "list[NDArray[np.uint64]]",
     "Map.locations": LOCATIONS,
     "Mapper.locations": LOCATIONS,
     "Mapper.statistics": "dict[str, Any]",

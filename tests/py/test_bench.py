@@ -137,3 +137,14 @@ def test_the_corpus_measures_each_recording_and_names_what_it_cannot_read(drive:
     figures = results["recordings"]["home.clf"]
     assert figures["ate"] < 0.05 < figures["ate_odometry"]
     assert (out / "home.clf/map.png").is_file()
+
+
+def test_a_kidnapped_robot_is_timed_until_it_says_rightly_where_it_is() -> None:
+    from kidnapped import LOOKED_AT, PERIOD, _figures
+
+    claims = np.array([True, True, False, False, True, True])
+    home = np.array([False, False, False, True, True, True])
+    drives = np.array([False, True, True, True, True, True])
+    step = PERIOD * LOOKED_AT
+    assert _figures(claims, home, drives) == {"home_s": 4 * step, "wrong_s": 2 * step, "wrong_late_s": 0.0}
+    assert _figures(claims[:3], home[:3], drives[:3])["home_s"] is None

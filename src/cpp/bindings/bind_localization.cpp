@@ -82,8 +82,10 @@ void bind_relocalizer(py::module_& m) {
              return std::make_unique<Relocalizer>(map, parameters);
            }),
            py::arg("map"), py::arg("parameters"))
-      .def("find", &Relocalizer::find, py::arg("scans"), py::call_guard<py::gil_scoped_release>(),
-           "Looks for one or a few scans, oldest first, joined by odometry; the answer is the newest one's pose.");
+      .def(
+          "find", [](const Relocalizer& self, const std::vector<PlacedScan>& scans) { return self.find(scans); },
+          py::arg("scans"), py::call_guard<py::gil_scoped_release>(),
+          "Looks for one or a few scans, oldest first, joined by odometry; the answer is the newest one's pose.");
 }
 
 py::dict dict_of(const LocalizationStatistics& s) {

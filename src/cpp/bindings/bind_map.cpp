@@ -14,6 +14,7 @@
 #include "oort/map/locations.hpp"
 #include "oort/map/map.hpp"
 #include "oort/map/map_of_views.hpp"
+#include "oort/map/parts.hpp"
 #include "oort/render/crop.hpp"
 #include "oort/render/render.hpp"
 #include "oort/storage/map_file.hpp"
@@ -138,13 +139,31 @@ RenderedMap rendered(const Map& map, const Parameters& parameters) {
   return render(map, parameters);
 }
 
-/// What lies in a box of x_min, y_min, x_max, y_max alone.
-RenderedMap rendered_within(const Map& map, const Parameters& parameters, const std::array<double, 4>& within) {
+using Box = std::array<double, 4>;  // x_min, y_min, x_max, y_max
+
+RenderedMap rendered_within(const Map& map, const Parameters& parameters, const std::optional<Box>& within,
+                            const std::optional<std::vector<std::uint64_t>>& nodes) {
   const py::gil_scoped_release release;
-  const auto& [x_min, y_min, x_max, y_max] = within;
+  const std::vector<std::uint64_t> chosen = nodes ? *nodes : parts_of(map).main;
+  if (!within) return render(map, chosen, parameters);
+  const auto& [x_min, y_min, x_max, y_max] = *within;
   const Eigen::AlignedBox2d box(Eigen::Vector2d(x_min, y_min), Eigen::Vector2d(x_max, y_max));
-  const Cropped cropped = crop(map.graph.nodes, map.clouds, box);
+  std::vector<Node> placed;
+  PointClouds clouds;
+  for (const std::uint64_t node : chosen) {
+    placed.push_back(map.graph.nodes.at(node));
+    clouds.push_back(map.clouds.shared(node));
+  }
+  const Cropped cropped = crop(placed, clouds, box);
   return render(cropped.nodes, cropped.clouds, parameters.output_map);
+}
+
+py::list loose_parts(const Map& map) {
+  py::list result;
+  for (const std::vector<std::uint64_t>& nodes : parts_of(map).loose) {
+    result.append(py::array_t<std::uint64_t>(static_cast<py::ssize_t>(nodes.size()), nodes.data()));
+  }
+  return result;
 }
 
 std::optional<PoseTuple> located(const Map& map, const std::string& name_space, const std::string& id) {
@@ -212,6 +231,9 @@ void bind_map_class(py::module_& m) {
           "locations", &get_locations, &set_locations,
           "Named places: a list of (namespace, id, node_id, (x, y, theta)) with the pose in the node's frame. "
           "Assign a list to replace them, but not while another thread saves this map.")
+      .def_property_readonly("loose_parts", &loose_parts,
+                             "Nodes that nothing ties to the rest, after a pause, in a session or after a kidnapping: "
+                             "for each such part an array of their ids. Where it lies is not known.")
       .def("locate", &located, py::arg("name_space"), py::arg("id"), "A place's pose in the map, or None.")
       .def(
           "save", [](const Map& map, const std::string& path) { save_map(path, map); }, py::arg("path"),
@@ -284,13 +306,14 @@ void bind_grids(py::module_& m) {
 void bind_rendering(py::module_& m) {
   m.def(
       "render_map",
-      [](const Map& map, const Parameters& parameters, const std::optional<std::array<double, 4>>& within) {
-        RenderedMap result = within ? rendered_within(map, parameters, *within) : rendered(map, parameters);
+      [](const Map& map, const Parameters& parameters, const std::optional<Box>& within,
+         const std::optional<std::vector<std::uint64_t>>& nodes) {
+        RenderedMap result = rendered_within(map, parameters, within, nodes);
         return std::make_pair(std::move(result.map), std::move(result.map_cleaned));
       },
-      py::arg("map"), py::arg("parameters"), py::arg("within") = py::none(),
-      "Draws a map: (map, map_cleaned), the second without speckle noise. Of the parameters "
-      "output_map counts. Of a box within (x_min, y_min, x_max, y_max) [m] only what lies there. "
+      py::arg("map"), py::arg("parameters"), py::arg("within") = py::none(), py::arg("nodes") = py::none(),
+      "Draws a map without its loose parts, or some nodes of it: (map, map_cleaned), the second without speckle noise. "
+      "Of the parameters output_map counts. Of a box within (x_min, y_min, x_max, y_max) [m] only what lies there. "
       "Raises ParameterError or InputError.");
 }
 

@@ -159,6 +159,11 @@ class Map:
     def loop_results(self) -> dict[str, NDArray[Any]]:
         """How loops were closed, as a dict of arrays: id, target, pose (T_id_target), covariance, hit_fraction."""
     @property
+    def loose_parts(self) -> list[NDArray[np.uint64]]:
+        """Nodes that nothing ties to the rest, after a pause, in a session or after a kidnapping: for each such part an
+        array of their ids. Where it lies is not known.
+        """
+    @property
     def node_ids(self) -> NDArray[np.uint64]:
         """(N,) ids of the nodes, 0...N-1."""
     @property
@@ -689,10 +694,11 @@ def read_parameters(path: str) -> tuple[Parameters, list[str]]:
     """The parameters of a file, and a sentence on each key that it gives twice. Raises ParameterError."""
 
 def render_map(
-    map: Map, parameters: Parameters, within: Sequence[float] | None = None
+    map: Map, parameters: Parameters, within: Sequence[float] | None = None, nodes: Sequence[int] | None = None
 ) -> tuple[OccupancyGrid, OccupancyGrid]:
-    """Draws a map: (map, map_cleaned), the second without speckle noise. Of the parameters output_map counts. Of a box
-    within (x_min, y_min, x_max, y_max) [m] only what lies there. Raises ParameterError or InputError.
+    """Draws a map without its loose parts, or some nodes of it: (map, map_cleaned), the second without speckle noise.
+    Of the parameters output_map counts. Of a box within (x_min, y_min, x_max, y_max) [m] only what lies there.
+    Raises ParameterError or InputError.
     """
 
 def save_map(path: str, map: Map, as_original: bool = False) -> None:

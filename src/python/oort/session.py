@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from oort._core import Map, Parameters, Saved, ScanResult, normalise_map_path, save_map, save_metadata
-from oort.diagnosis import Observer, Trouble, diagnose
+from oort.diagnosis import Observer, Trouble, diagnose, loose_parts
 from oort.errors import StateError
 from oort.locations import Locations, Pose
 from oort.mapper import Mapper
@@ -155,7 +155,7 @@ class Session:
 
     def troubles(self) -> list[Trouble]:
         """What the scans that were observed, and their mapping, show to be wrong with the setup or the recording."""
-        return diagnose(self._observer, self._mapper.statistics)
+        return [*diagnose(self._observer, self._mapper.statistics), *loose_parts(self.map)]
 
     # ---- map calls ----
 

@@ -16,7 +16,8 @@
 namespace frsm {
 namespace {
 
-constexpr double kWidest = 1e4;  // [m]
+constexpr double kWidest = 1e4;                   // [m]
+constexpr std::uint64_t kLookupsTold = 1U << 20;  // at once
 
 // A square of shifts at one heading: 2^level from (ix, iy) upwards.
 struct Square {
@@ -31,8 +32,9 @@ struct Square {
 
 class PeakFinder {
  public:
-  PeakFinder(const Table& table, const Points& body, const Lattice& lattice, const PeakParams& params)
-      : lattice_(lattice), params_(params), pyramid_(table.bounds()), points_(body.size()) {
+  PeakFinder(const Table& table, const Points& body, const Lattice& lattice, const PeakParams& params,
+             const OnLookups& on_lookups)
+      : lattice_(lattice), params_(params), on_lookups_(on_lookups), pyramid_(table.bounds()), points_(body.size()) {
     levels_.push_back(table.view());
     const int side = 2 * std::max(lattice_.nx, lattice_.ny) + 1;
     for (int h = 1; h <= pyramid_->top() && (1 << (h - 1)) < side; ++h) levels_.push_back(pyramid_->level(h));
@@ -91,8 +93,16 @@ class PeakFinder {
   }
 
   void push(int level, int it, int ix, int iy) {
+    count_lookups();
     const std::uint32_t sum = sum_values(levels_[level], cells_[it + lattice_.nt], ix, iy);
     if (sum >= floor_) queue_.push({sum, level, it, ix, iy});
+  }
+
+  void count_lookups() {
+    lookups_ += points_;
+    if (lookups_ < kLookupsTold) return;
+    if (on_lookups_) on_lookups_(lookups_);
+    lookups_ = 0;
   }
 
   // Whether all of a square belongs to a peak that was found.
@@ -113,6 +123,8 @@ class PeakFinder {
 
   const Lattice& lattice_;
   const PeakParams& params_;
+  const OnLookups& on_lookups_;
+  std::uint64_t lookups_ = 0;  // not told yet
   std::shared_ptr<const BoundPyramid> pyramid_;
   std::size_t points_;
   std::vector<TableView> levels_;
@@ -134,7 +146,7 @@ void PeakParams::validate() const {
 }
 
 Peaks find_peaks(const Table& table, const Points& body, const Pose& middle, const Window& window,
-                 const PeakParams& params) {
+                 const PeakParams& params, const OnLookups& on_lookups) {
   params.validate();
   check(is_finite(middle), "the middle of the window", "is not finite");
   check(window.x >= 0.0 && window.y >= 0.0 && window.theta >= 0.0, "the window", "has a negative half width");
@@ -150,7 +162,7 @@ Peaks find_peaks(const Table& table, const Points& body, const Pose& middle, con
                         steps(window.x, cell),
                         steps(window.y, cell),
                         window.theta >= M_PI ? half_turn : std::min(half_turn, steps(window.theta, params.theta_step))};
-  return PeakFinder(table, points, lattice, params).run();
+  return PeakFinder(table, points, lattice, params, on_lookups).run();
 }
 
 }  // namespace frsm

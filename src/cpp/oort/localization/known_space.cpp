@@ -3,6 +3,7 @@
 #include "oort/localization/known_space.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "oort/grid/range_data.hpp"
@@ -24,16 +25,18 @@ OutputGridParameters grid_parameters() {
   return p;
 }
 
-GridLimits limits_of(const Map& map) {
+GridLimits limits_of(const Map& map, const std::vector<std::uint64_t>& nodes) {
   Eigen::AlignedBox2d box(Eigen::Vector2d::Zero());
   const OutputGridParameters parameters = grid_parameters();
-  for (std::size_t k = 0; k < map.clouds.size(); ++k) {
-    const Pose2& pose = map.graph.nodes[k].pose;
+  for (const std::uint64_t node : nodes) {
+    const Pose2& pose = map.graph.nodes[node].pose;
     box.extend(pose.translation());
-    for (const BeamEnd& end : beam_ends(map.clouds[k], pose, parameters)) box.extend(end.point);
+    for (const BeamEnd& end : beam_ends(map.clouds[node], pose, parameters)) box.extend(end.point);
   }
-  const Eigen::Vector2d border = Eigen::Vector2d::Constant(2.0 * parameters.resolution);
-  return GridLimits::enclosing({box.min() - border, box.max() + border}, parameters.resolution);
+  const double coarsest = std::sqrt(box.volume() / LocalizationTuning::kMaxCells);
+  const double resolution = std::clamp(coarsest, parameters.resolution, LocalizationTuning::kLargestCell);
+  const Eigen::Vector2d border = Eigen::Vector2d::Constant(2.0 * resolution);
+  return GridLimits::enclosing({box.min() - border, box.max() + border}, resolution);
 }
 
 int sector_of(const Eigen::Vector2d& normal) {
@@ -53,11 +56,12 @@ std::uint8_t around(int sector) {
 
 }  // namespace
 
-KnownSpace::KnownSpace(const Map& map) : grid_(limits_of(map)), facing_(grid_.limits().cell_count(), 0) {
+KnownSpace::KnownSpace(const Map& map, const std::vector<std::uint64_t>& nodes)
+    : grid_(limits_of(map, nodes)), facing_(grid_.limits().cell_count(), 0) {
   const RangeDataInserter inserter(grid_parameters());
-  for (std::size_t k = 0; k < map.clouds.size(); ++k) {
-    inserter.insert(map.clouds[k], map.graph.nodes[k].pose, grid_);
-    add_surfaces(map.clouds[k], map.graph.nodes[k].pose);
+  for (const std::uint64_t node : nodes) {
+    inserter.insert(map.clouds[node], map.graph.nodes[node].pose, grid_);
+    add_surfaces(map.clouds[node], map.graph.nodes[node].pose);
   }
 }
 

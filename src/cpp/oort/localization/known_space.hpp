@@ -14,8 +14,8 @@ namespace oort {
 /// What a map says of the space in it: where is free floor, where are walls, and their normals.
 class KnownSpace {
  public:
-  /// Throws InputError if the map is too large for a grid.
-  explicit KnownSpace(const Map& map);
+  /// What some nodes of a map saw. Throws InputError if it is too large for a grid.
+  KnownSpace(const Map& map, const std::vector<std::uint64_t>& nodes);
 
   bool is_wall(const Eigen::Vector2d& p_map) const;
   bool is_free(const Eigen::Vector2d& p_map) const;

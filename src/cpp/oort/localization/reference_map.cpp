@@ -16,11 +16,28 @@
 namespace oort {
 namespace {
 
-frsm::TableParams coarse_params(const Parameters& parameters) {
+/// Cells `coarser` times as large as usual.
+frsm::TableParams fine_params(const Parameters& parameters, double coarser) {
   frsm::TableParams params = table_params(parameters.incremental_graph_builder.frsm_matcher);
-  params.cell = LocalizationTuning::kCoarseCell;
-  params.sigma = LocalizationTuning::kCoarseSigma;
+  params.cell *= coarser;
   return params;
+}
+
+frsm::TableParams coarse_params(const Parameters& parameters, double coarser) {
+  frsm::TableParams params = table_params(parameters.incremental_graph_builder.frsm_matcher);
+  params.cell = coarser * LocalizationTuning::kCoarseCell;
+  params.sigma = coarser * LocalizationTuning::kCoarseSigma;
+  return params;
+}
+
+double coarser(const KnownSpace& space) {
+  return space.limits().resolution / LocalizationTuning::kCell;
+}
+
+std::vector<std::uint64_t> all_nodes(const Map& map) {
+  std::vector<std::uint64_t> nodes;
+  for (const Node& node : map.graph.nodes) nodes.push_back(node.id);
+  return nodes;
 }
 
 const Map& checked(const Map& map, const Parameters& parameters) {
@@ -39,13 +56,16 @@ double Support::value() const {
 }
 
 ReferenceMap::ReferenceMap(const Map& map, const Parameters& parameters)
-    : fine_(table_params(parameters.incremental_graph_builder.frsm_matcher)),
-      coarse_(coarse_params(parameters)),
-      space_(checked(map, parameters)),
+    : ReferenceMap(checked(map, parameters), all_nodes(map), parameters) {}
+
+ReferenceMap::ReferenceMap(const Map& map, const std::vector<std::uint64_t>& nodes, const Parameters& parameters)
+    : space_(map, nodes),
+      fine_(fine_params(parameters, coarser(space_))),
+      coarse_(coarse_params(parameters, coarser(space_))),
       hit_value_(matcher_params(parameters.incremental_graph_builder.frsm_matcher).hit_value) {
-  for (std::size_t k = 0; k < map.clouds.size(); ++k) {
-    const frsm::Pose pose = to_frsm(map.graph.nodes[k].pose);
-    const frsm::Points points = returns_of(map.clouds[k]);
+  for (const std::uint64_t node : nodes) {
+    const frsm::Pose pose = to_frsm(map.graph.nodes[node].pose);
+    const frsm::Points points = returns_of(map.clouds[node]);
     const frsm::Points world = frsm::transform(pose, points);
     const std::vector<frsm::Contour> contours = frsm::extract_contours(points, frsm::ContourParams::urg());
     fine_.draw(world, contours, pose);

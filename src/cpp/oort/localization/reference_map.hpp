@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <frsm/matcher.hpp>
 #include <frsm/table.hpp>
+#include <vector>
 
 #include "oort/localization/known_space.hpp"
 #include "oort/map/map.hpp"
@@ -23,11 +25,15 @@ struct Support {
   double value() const;
 };
 
-/// A saved map made ready to find a robot on it: every cloud drawn at its node's solved pose. It never changes.
+/// A map, or a part of one, made ready to find a robot on it: every cloud drawn at its node's solved pose. It never
+/// changes. Of a large area all is drawn more coarsely, so that memory and work are bounded.
 class ReferenceMap {
  public:
   /// Throws InputError if the map has no node, contradicts itself or is too large, ParameterError as Mapper does.
   ReferenceMap(const Map& map, const Parameters& parameters);
+
+  /// What some nodes of a map saw. Both are taken to be usable.
+  ReferenceMap(const Map& map, const std::vector<std::uint64_t>& nodes, const Parameters& parameters);
 
   const frsm::Table& fine() const { return fine_; }      ///< for the matcher
   const frsm::Table& coarse() const { return coarse_; }  ///< for searching all of it
@@ -37,9 +43,9 @@ class ReferenceMap {
   void weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Support& support) const;
 
  private:
+  KnownSpace space_;
   frsm::Table fine_;
   frsm::Table coarse_;
-  KnownSpace space_;
   int hit_value_;
 };
 

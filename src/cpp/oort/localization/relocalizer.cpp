@@ -37,6 +37,14 @@ frsm::Points one_per_cell(const frsm::Points& points, double cell) {
   return kept;
 }
 
+// So many of the points, evenly spread.
+frsm::Points at_most(std::size_t count, const frsm::Points& points) {
+  if (points.size() <= count) return points;
+  frsm::Points kept;
+  for (std::size_t k = 0; k < count; ++k) kept.push_back(points[k * points.size() / count]);
+  return kept;
+}
+
 // The returns of all scans in the frame of the newest.
 frsm::Points join(const std::vector<PlacedScan>& scans) {
   frsm::Points points;
@@ -72,7 +80,8 @@ Relocalizer::Relocalizer(std::shared_ptr<const ReferenceMap> map, const Paramete
       min_score_(parameters.loop_closure_graph_builder.branch_and_bound_matcher.global_localization_min_score),
       matcher_(matcher_params(parameters.incremental_graph_builder.frsm_matcher)) {}
 
-Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
+Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans, const SearchEffort& effort,
+                                 const frsm::OnLookups& on_lookups) const {
   if (scans.empty()) throw InputError("relocalisation: no scan was given");
   for (const PlacedScan& scan : scans) {
     if (!is_finite(scan.T_odom_sensor)) throw InputError("relocalisation: a scan's odometry pose is not finite");
@@ -84,7 +93,7 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
     return result;
   }
   bool complete = true;
-  std::vector<Hypothesis> found = hypotheses(scans, points, complete);
+  std::vector<Hypothesis> found = hypotheses(scans, points, effort, on_lookups, complete);
   std::stable_sort(found.begin(), found.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.support.value() > b.support.value(); });
   if (!found.empty()) {
@@ -99,25 +108,27 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans) const {
 }
 
 std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
+                                                const SearchEffort& effort, const frsm::OnLookups& on_lookups,
                                                 bool& complete) const {
   const GridLimits& limits = map_->space().limits();
   const double half_x = 0.5 * limits.width * limits.resolution;
   const double half_y = 0.5 * limits.height * limits.resolution;
   frsm::PeakParams search;
   search.floor = std::max(min_score_, LocalizationTuning::kMinScore);
-  search.ratio = LocalizationTuning::kPeakRatio;
+  search.ratio = effort.ratio;
   search.apart_xy = search.apart_theta = LocalizationTuning::kPeakSpacing;
-  const frsm::Points sparse = one_per_cell(points, LocalizationTuning::kSearchVoxel);
+  search.max_expansions = effort.max_expansions;
+  const frsm::Points sparse = at_most(effort.max_points, one_per_cell(points, LocalizationTuning::kSearchVoxel));
   search.theta_step = theta_step(sparse, map_->coarse().params().cell);
   const frsm::Peaks peaks =
       frsm::find_peaks(map_->coarse(), sparse, {limits.origin_x + half_x, limits.origin_y + half_y, 0.0},
-                       {half_x, half_y, M_PI}, search);
+                       {half_x, half_y, M_PI}, search, on_lookups);
   complete = peaks.complete;
+  const double reach = std::max(LocalizationTuning::kFineReach, 2.0 * map_->coarse().params().cell);
   std::vector<Hypothesis> found;
   for (const frsm::Peak& peak : peaks.peaks) {
-    const frsm::Match match = matcher_.match(
-        map_->fine(), points, peak.pose,
-        {LocalizationTuning::kFineReach, LocalizationTuning::kFineReach, 2.0 * search.theta_step}, nullptr);
+    const frsm::Match match =
+        matcher_.match(map_->fine(), points, peak.pose, {reach, reach, 2.0 * search.theta_step}, nullptr, on_lookups);
     if (match.hits == 0) continue;
     Hypothesis hypothesis{from_frsm(match.pose), match.covariance, {}};
     for (const PlacedScan& scan : scans) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -37,6 +38,13 @@ struct Relocalization {
   bool found() const { return rejection == Rejection::kNone; }
 };
 
+/// What a search may cost at most.
+struct SearchEffort {
+  double ratio = 0.75;                  ///< places of less than this share of the best score are no rivals
+  std::size_t max_points = 100000;      ///< of the scans, that are looked for everywhere
+  std::size_t max_expansions = 150000;  ///< see frsm::PeakParams
+};
+
 /// Finds the robot on a map without a guess: branch and bound over the whole map and all headings (Hess et al. 2016),
 /// then a look at each place that scores nearly as well as the best. Const and re-entrant.
 class Relocalizer {
@@ -45,10 +53,13 @@ class Relocalizer {
 
   /// `scans`: one or a few, oldest first, joined by odometry. The answer is the newest one's pose.
   /// Throws InputError if there is none or a pose is not finite.
-  Relocalization find(const std::vector<PlacedScan>& scans) const;
+  /// `on_lookups` is told now and then how many more table values the search has read.
+  Relocalization find(const std::vector<PlacedScan>& scans, const SearchEffort& effort = {},
+                      const frsm::OnLookups& on_lookups = {}) const;
 
  private:
   std::vector<Hypothesis> hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
+                                     const SearchEffort& effort, const frsm::OnLookups& on_lookups,
                                      bool& complete) const;
   Rejection judge(const Relocalization& result, bool complete) const;
 

@@ -55,7 +55,6 @@ struct LocalizationTuning {
   static constexpr double kSearchVoxel = 0.1;     ///< [m] of the points that are looked for everywhere
   static constexpr double kMatchVoxel = 0.05;     ///< [m] of those that are matched around each peak
   static constexpr double kMinScore = 0.01;       ///< that a peak can be asked for
-  static constexpr double kPeakRatio = 0.75;      ///< of the best peak's score
   static constexpr double kPeakSpacing = 0.3;     ///< [m] and [rad] between two places
   static constexpr double kFineReach = 0.1;       ///< [m] around a peak
   static constexpr double kMinThetaStep = 0.01;   ///< [rad]
@@ -68,6 +67,8 @@ struct LocalizationTuning {
 
   // The reference map's walls, floor and normals. A cell that was hit more often than passed is a wall.
   static constexpr double kCell = 0.05;            ///< [m]
+  static constexpr double kMaxCells = 6e6;         ///< of a grid: of 150 m x 100 m; a larger area has larger ones,
+  static constexpr double kLargestCell = 0.2;      ///< up to [m]
   static constexpr double kHitProbability = 0.65;  ///< of one observation
   static constexpr double kMissProbability = 0.45;
   static constexpr double kWall = 0.6;      ///< probability above which a cell is a wall,

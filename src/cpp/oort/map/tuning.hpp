@@ -13,6 +13,9 @@ struct MapTuning {
   /// [m] The same of scans that are matched together as one query (walk_trajectory), which asks for more.
   static constexpr double kMaxWalkDeviation = 0.2;
 
+  /// [m] The same of an edge from which on it tells nothing of a place: of pauses (12.6) and sessions (15.8).
+  static constexpr double kMaxPlacedDeviation = 5.0;
+
   /// [m] Poses farther from the origin come from a broken input.
   static constexpr double kMaxCoordinate = 1e5;
 };

@@ -3,17 +3,28 @@
 #include "oort/mapper/global_slam.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "oort/graph/tuning.hpp"
 #include "oort/maintenance/outdated.hpp"
 #include "oort/maintenance/refinement.hpp"
+#include "oort/map/tuning.hpp"
 #include "oort/mapper/tuning.hpp"
 
 namespace oort {
+namespace {
+
+/// Whether nothing at all is known of where a node lies that begins a segment.
+bool is_unknown(const NodeAddition& node) {
+  const Eigen::Matrix3d& covariance = node.edges.front().constraint.covariance;
+  return std::max(covariance(0, 0), covariance(1, 1)) > MapTuning::kMaxPlacedDeviation * MapTuning::kMaxPlacedDeviation;
+}
+
+}  // namespace
 
 GlobalSlam::GlobalSlam(const Parameters& parameters)
-    : parameters_(parameters), loops_(parameters), docks_(parameters) {}
+    : parameters_(parameters), loops_(parameters), docks_(parameters), segment_search_(parameters) {}
 
 void GlobalSlam::set_map(const Map& map) {
   map_.set_map(map);
@@ -30,10 +41,12 @@ void GlobalSlam::begin_session() {
   loops_ = LoopClosureBuilder(parameters_);
   not_looked_from_.clear();
   session_begin_ = map_.node_count();
+  segment_search_ = SegmentSearch(parameters_);
 }
 
 void GlobalSlam::add(const NodeAddition& node) {
   not_looked_from_.push_back(map_.node_count());
+  if (node.begins_segment && !node.edges.empty()) segment_search_.begin(map_.node_count(), is_unknown(node));
   map_.add(node);
 }
 
@@ -43,6 +56,7 @@ void GlobalSlam::request_dock(const std::vector<Location>& locations) {
 
 bool GlobalSlam::has_work() const {
   return !dock_requests_.empty() || !not_looked_from_.empty() || loops_.has_work() ||
+         segment_search_.is_due(map_.node_count()) ||
          schedule_.due(map_.node_count(), map_.node_count()) != SolveSchedule::Extent::kNothing;
 }
 
@@ -53,29 +67,25 @@ Correction GlobalSlam::work(WorkMeter& meter) {
     solve_due(extent, &meter);
     return solved();
   }
+  if (segment_search_.is_due(map_.node_count())) {
+    const WorkClock clock(work_seconds_.matching);
+    return placed(segment_search_.look(map(), map_.segments(), &meter));
+  }
   if (!not_looked_from_.empty()) {
     const WorkClock clock(work_seconds_.candidates);
     loops_.look(map(), map_.segments(), not_looked_from_.front(), &meter);
     not_looked_from_.pop_front();
-    return {{}, std::nullopt, counts_, {}, {}};
+    return {{}, std::nullopt, counts_, {}, {}, {}};
   }
   const WorkClock clock(work_seconds_.matching);
-  return found(loops_.work(map(), map_.segments(), counts_.loops, closure_log_, &meter));
+  return found(trusted(loops_.work(map(), map_.segments(), counts_.loops, closure_log_, &meter)));
 }
 
 Correction GlobalSlam::finish() {
   Correction all = link_docks();
-  while (!not_looked_from_.empty() || loops_.has_work()) {
-    if (!not_looked_from_.empty()) {
-      loops_.look(map(), map_.segments(), not_looked_from_.front(), nullptr);
-      not_looked_from_.pop_front();
-      continue;
-    }
-    const WorkClock clock(work_seconds_.matching);
-    const Correction some = found(loops_.work_off(map(), map_.segments(), counts_.loops, closure_log_));
-    all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
-  }
+  work_off(all);
   if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(MapperTuning::kFinalIterations);
+  tie_loose_parts(all);
   if (parameters_.final_refinement) counts_.refinement = refine(map_.edit(), first_free());
   all.solution = map_.solution();
   all.counts = counts_;
@@ -109,14 +119,79 @@ Correction GlobalSlam::link_docks(WorkMeter* meter) {
   return all;
 }
 
+void GlobalSlam::work_off(Correction& all) {
+  while (!not_looked_from_.empty() || loops_.has_work()) {
+    if (!not_looked_from_.empty()) {
+      loops_.look(map(), map_.segments(), not_looked_from_.front(), nullptr);
+      not_looked_from_.pop_front();
+      continue;
+    }
+    const WorkClock clock(work_seconds_.matching);
+    const Correction some = found(trusted(loops_.work_off(map(), map_.segments(), counts_.loops, closure_log_)));
+    all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
+  }
+}
+
+/// Once more with everything, as long as what is found helps to find more.
+void GlobalSlam::tie_loose_parts(Correction& all) {
+  int looks_left = MapperTuning::kMaxLooksInAll;
+  for (int round = 0; round < MapperTuning::kMaxRounds; ++round) {
+    std::vector<SegmentFinding> findings;
+    {
+      const WorkClock clock(work_seconds_.matching);
+      findings = segment_search_.look_for_all(map(), map_.segments(), looks_left);
+    }
+    bool tied = false;
+    for (const SegmentFinding& finding : findings) {
+      if (finding.nodes.front().begin < first_free()) continue;  // it is to stay as it is
+      const Correction some = placed(finding);
+      all.elsewhere.insert(all.elsewhere.end(), some.elsewhere.begin(), some.elsewhere.end());
+      all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
+      tied = tied || !some.closures.empty();
+    }
+    if (!tied) return;
+    solve_anew(MapperTuning::kFinalIterations);
+    work_off(all);
+    solve_anew(MapperTuning::kFinalIterations);
+  }
+}
+
 Correction GlobalSlam::found(const std::vector<Closure>& closures) {
   for (const Closure& closure : closures) schedule_.add_closure(map_.add(closure));
-  return {closures, std::nullopt, counts_, {}, {}};
+  return {closures, std::nullopt, counts_, {}, {}, {}};
+}
+
+std::vector<Closure> GlobalSlam::trusted(std::vector<Closure> closures) const {
+  const auto refused = [this](const Closure& closure) { return segment_search_.refuses(closure); };
+  closures.erase(std::remove_if(closures.begin(), closures.end(), refused), closures.end());
+  return closures;
+}
+
+Correction GlobalSlam::placed(const SegmentFinding& finding) {
+  if (finding.is_nothing()) return {{}, std::nullopt, counts_, {}, {}, {}};
+  if (finding.withdrawn) {
+    map_.withdraw_ties(finding.nodes);
+    is_on_.clear();
+    count_switches();
+  }
+  if (finding.disproved) map_.loosen(finding.nodes);
+  Correction correction = found(finding.closures);
+  if (!finding.disproved) return correction;
+  correction.elsewhere = {finding};
+  if (finding.closures.empty()) return correction;
+  // Solving begins where the closures say: from elsewhere it would rather switch them off.
+  for (Node& node : map_.edit().graph.nodes) {
+    if (!contains(finding.nodes, node.id)) continue;
+    node.pose = finding.T_new_old * node.pose;
+    not_looked_from_.push_back(node.id);
+  }
+  correction.solution = map_.solution();
+  return correction;
 }
 
 Correction GlobalSlam::solved() {
   count_switches();
-  return {{}, map_.solution(), counts_, {}, {}};
+  return {{}, map_.solution(), counts_, {}, {}, {}};
 }
 
 void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {

@@ -12,6 +12,7 @@
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
 #include "oort/mapper/growing_map.hpp"
+#include "oort/mapper/segment_search.hpp"
 #include "oort/mapper/solve_schedule.hpp"
 #include "oort/mapper/statistics.hpp"
 #include "oort/mapper/work_clock.hpp"
@@ -27,6 +28,8 @@ struct Correction {
   /// The clouds without what newer ones contradict, if anything was.
   std::optional<PointClouds> clouds;
   std::vector<bool> docked;  ///< of requests for the dock, oldest first: whether a closure was found
+  /// Untied nodes that are elsewhere, before the closures that may tie them.
+  std::vector<SegmentFinding> elsewhere;
 };
 
 /// Global SLAM: looks for loops, matches and confirms them, solves the graph. It works on a map of its own, to which
@@ -73,6 +76,10 @@ class GlobalSlam {
   };
 
   Correction found(const std::vector<Closure>& closures);
+  std::vector<Closure> trusted(std::vector<Closure> closures) const;
+  Correction placed(const SegmentFinding& finding);
+  void work_off(Correction& all);
+  void tie_loose_parts(Correction& all);
   Correction solved();
   void solve_due(SolveSchedule::Extent extent, WorkMeter* meter);
   bool solve_newest(WorkMeter* meter);
@@ -86,6 +93,7 @@ class GlobalSlam {
   GrowingMap map_;
   LoopClosureBuilder loops_;
   DockGraphBuilder docks_;
+  SegmentSearch segment_search_;
   SolveSchedule schedule_;
   std::deque<std::uint64_t> not_looked_from_;  // nodes for which no candidates were looked for yet
   std::uint64_t session_begin_ = 0;            // the session's first node

@@ -2,9 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/mapper/growing_map.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "oort/mapper/tuning.hpp"
+
 namespace oort {
+namespace {
+
+bool leads_out(const std::vector<NodeRange>& nodes, std::uint64_t i, std::uint64_t j) {
+  return contains(nodes, i) != contains(nodes, j);
+}
+
+}  // namespace
 
 void GrowingMap::set_map(Map map) {
   map_ = std::move(map);
@@ -30,6 +40,27 @@ void GrowingMap::add(const NodeAddition& addition) {
 
 double GrowingMap::add(const Closure& closure) {
   return add_closure(closure, next_edge_id_++, map_);
+}
+
+void GrowingMap::withdraw_ties(const std::vector<NodeRange>& nodes) {
+  std::vector<SwitchableEdge>& edges = map_.graph.switchable_edges;
+  std::vector<LoopResult>& results = map_.loop_results;
+  const auto is_tie = [&](const SwitchableEdge& edge) {
+    return edge.firmness <= 1.0 && leads_out(nodes, edge.i, edge.j);
+  };
+  for (const SwitchableEdge& edge : edges) {
+    if (!is_tie(edge)) continue;
+    const auto of_edge = [&](const LoopResult& result) { return result.id == edge.i && result.target == edge.j; };
+    results.erase(std::remove_if(results.begin(), results.end(), of_edge), results.end());
+  }
+  edges.erase(std::remove_if(edges.begin(), edges.end(), is_tie), edges.end());
+}
+
+void GrowingMap::loosen(const std::vector<NodeRange>& nodes) {
+  const Eigen::Vector3d sigma(MapperTuning::kLooseSigma, MapperTuning::kLooseSigma, MapperTuning::kLooseSigma);
+  for (Edge& edge : map_.graph.edges) {
+    if (leads_out(nodes, edge.i, edge.j)) edge.constraint.covariance = sigma.cwiseAbs2().asDiagonal();
+  }
 }
 
 void GrowingMap::apply(const Solution& solution) {

@@ -8,6 +8,7 @@
 #include "oort/loop_closure/closure.hpp"
 #include "oort/map/map.hpp"
 #include "oort/map/node_addition.hpp"
+#include "oort/map/node_range.hpp"
 #include "oort/map/trajectory_segments.hpp"
 
 namespace oort {
@@ -35,6 +36,12 @@ class GrowingMap {
 
   /// Adds a switchable edge. Returns its squared Mahalanobis distance from the present poses.
   double add(const Closure& closure);
+
+  /// Takes out the closures that tie the nodes to others, but for firm ones.
+  void withdraw_ties(const std::vector<NodeRange>& nodes);
+
+  /// Nothing is known any more of where the nodes lie but what closures say.
+  void loosen(const std::vector<NodeRange>& nodes);
 
   /// Takes over the poses and switches of a solution. Nodes that it does not know yet follow the ones they were placed
   /// from.

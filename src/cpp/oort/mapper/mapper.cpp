@@ -214,10 +214,17 @@ const ClosureLog& Mapper::closure_attempts() const {
   return lane_->slam().closure_log();
 }
 
+void Mapper::take_apart(const SegmentFinding& elsewhere) {
+  if (elsewhere.withdrawn) map_.withdraw_ties(elsewhere.nodes);
+  map_.loosen(elsewhere.nodes);
+  if (elsewhere.withdrawn) tracking_.add_untied(elsewhere.nodes.front().begin, false);
+}
+
 /// Whether that changes the map.
 bool Mapper::take_effect(const std::vector<Correction>& corrections) {
   bool solved = false, closed = false;
   for (const Correction& correction : corrections) {
+    for (const SegmentFinding& elsewhere : correction.elsewhere) take_apart(elsewhere);
     for (const Closure& closure : correction.closures) map_.add(closure);
     if (correction.solution) map_.apply(*correction.solution);
     if (correction.clouds) map_.edit().clouds = *correction.clouds;

@@ -121,6 +121,7 @@ class Mapper {
   };
   std::vector<std::uint64_t> prune();
   void use(const Map& map);
+  void take_apart(const SegmentFinding& elsewhere);
   bool take_effect(const std::vector<Correction>& corrections);
   void add(const TrajectoryNode& node);
   bool remove_body();

@@ -29,6 +29,53 @@ struct MapperTuning {
   static constexpr std::uint64_t kMinProgress = 10;    ///< nodes (merging: closures) between solves of the whole graph
   static constexpr std::uint64_t kGrowthParts = 20;    ///< the graph grows by one part in so many between them
   static constexpr std::uint64_t kNewestNodes = 1000;  ///< that are moved when a large graph has a large innovation
+
+  // When an untied segment is looked for on the whole map (docs/tracking.md): after so many nodes,
+  static constexpr std::uint64_t kFirstSearch = 4;  ///< where nothing is known of its place
+  /// where odometry is merely doubted: closures near by are likelier, and cheaper
+  static constexpr std::uint64_t kFirstSearchNearby = 6;
+  static constexpr std::uint64_t kLeastSearchSpacing = 2;  ///< then after as many more,
+  static constexpr std::uint64_t kSearchGrowthParts = 5;   ///< or one part in so many of what it has by then;
+  static constexpr std::uint64_t kDoubtGrowthParts = 2;    ///< of what is merely doubted
+  static constexpr std::size_t kNodesPerSearch = 11;       ///< that are looked for together: some 2 m of travel
+
+  // What one search may cost while mapping: about 0.1 s at most. Searches that find something in homes cost a third.
+  /// Least share of the best score that a rival has. To 0.75, as for a robot that is looked for on a saved map, the
+  /// search of fr079 would not end; the support of what scores less differs by relocalizer.min_lead anyway.
+  static constexpr double kRivalScore = 0.85;
+  static constexpr std::size_t kSearchPoints = 250;
+  static constexpr std::size_t kSearchExpansions = 100000;
+
+  // Two answers agree within this; what they say of a bent map is no better.
+  static constexpr double kSameAnswer = 0.3;          ///< [m]
+  static constexpr double kSameAnswerAngle = 0.15;    ///< [rad]
+  static constexpr double kAnswerTravel = 0.3;        ///< [m] from one answer to the next
+  static constexpr std::size_t kAgreeingAnswers = 3;  ///< that are believed, if they are
+  static constexpr double kAnswersApart = 1.0;        ///< [m] from the first to the last
+  // Errors of an answer that the shape of its match does not show.
+  static constexpr double kAnswerSigma = 0.05;        ///< [m]
+  static constexpr double kAnswerSigmaTheta = 0.015;  ///< [rad]
+
+  // A place that a search gave is wrong if so many looks in a row see this share of their returns behind walls or on
+  // free floor.
+  static constexpr double kContradictingShare = 0.3;
+  static constexpr int kContradictions = 3;
+
+  static constexpr std::uint64_t kMaxLooks = 16;  ///< for a segment when mapping ends
+  static constexpr int kMaxLooksInAll = 300;      ///< some 30 s at most
+  static constexpr int kMaxRounds = 8;            ///< of looking for all of them: what was found helps to find others
+
+  static constexpr double kReferenceMoved = 0.1;  ///< [m] by which a node moves until the map is drawn anew,
+  /// which is done once the map has grown by one part in so many: all drawings together cost four of the final map's
+  static constexpr std::uint64_t kRedrawParts = 3;
+
+  static constexpr double kLooseSigma = 15.0;  ///< [m, rad] of an edge that shall tell nothing
+
+  // Work units (geometry/work_meter.hpp).
+  static constexpr double kWorkPerReferencePoint = 1.5;
+  static constexpr double kWorkPerLookup = 0.0015;
+  static constexpr double kWorkPerRayStep = 0.006;
+  static constexpr double kWeighedPlaces = 2.0;  ///< per search, usually
 };
 
 }  // namespace oort

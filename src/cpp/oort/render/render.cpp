@@ -8,6 +8,7 @@
 
 #include "oort/geometry/errors.hpp"
 #include "oort/grid/range_data.hpp"
+#include "oort/map/parts.hpp"
 #include "oort/render/speckle.hpp"
 
 namespace oort {
@@ -139,8 +140,23 @@ RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, co
   return {std::move(map), std::move(map_cleaned)};
 }
 
+RenderedMap render(const Map& map, const std::vector<std::uint64_t>& nodes, const Parameters& parameters) {
+  std::vector<Node> chosen;
+  PointClouds clouds;
+  for (const std::uint64_t node : nodes) {
+    if (node >= map.graph.nodes.size() || node >= map.clouds.size()) {
+      throw InputError("render: the map has no node " + std::to_string(node) + " with a cloud");
+    }
+    chosen.push_back(map.graph.nodes[node]);
+    clouds.push_back(map.clouds.shared(node));
+  }
+  return render(chosen, clouds, parameters.output_map);
+}
+
 RenderedMap render(const Map& map, const Parameters& parameters) {
-  return render(map.graph.nodes, map.clouds, parameters.output_map);
+  const MapParts parts = parts_of(map);
+  if (parts.loose.empty()) return render(map.graph.nodes, map.clouds, parameters.output_map);
+  return render(map, parts.main, parameters);
 }
 
 }  // namespace oort

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "oort/graph/graph.hpp"
@@ -29,7 +30,11 @@ struct RenderedMap {
 /// is not finite or a node or its cloud lies too far off for a grid.
 RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, const OutputMapParameters& parameters);
 
-/// The same of a whole map; of the parameters output_map counts.
+/// The same of some nodes of a map; of the parameters output_map counts.
+RenderedMap render(const Map& map, const std::vector<std::uint64_t>& nodes, const Parameters& parameters);
+
+/// The same of the map's main part: where loose ones lie is not known (map/parts.hpp), and drawn over it they would
+/// make walls where there are none.
 RenderedMap render(const Map& map, const Parameters& parameters = {});
 
 }  // namespace oort

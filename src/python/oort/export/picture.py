@@ -51,10 +51,18 @@ def write_picture(
     accepted: ArrayLike = (),
     rejected: ArrayLike = (),
     locations: Sequence[tuple[str, Pose]] = (),
+    captions: Sequence[tuple[str, tuple[float, float]]] = (),
 ) -> None:
     """Writes a PNG, see draw_picture. Raises OortError too, if the file cannot be written."""
     png = draw_picture(
-        cells, resolution, origin, trajectory=trajectory, accepted=accepted, rejected=rejected, locations=locations
+        cells,
+        resolution,
+        origin,
+        trajectory=trajectory,
+        accepted=accepted,
+        rejected=rejected,
+        locations=locations,
+        captions=captions,
     )
     write_atomically(Path(path), png)
 
@@ -68,12 +76,14 @@ def draw_picture(
     accepted: ArrayLike = (),
     rejected: ArrayLike = (),
     locations: Sequence[tuple[str, Pose]] = (),
+    captions: Sequence[tuple[str, tuple[float, float]]] = (),
 ) -> bytes:
     """Draws a PNG; the same arguments give the same bytes.
 
     `cells` (height, width), `resolution` [m] and `origin` are as in GridMap. `trajectory` is (n, 2 or more) with x, y
-    [m] first; `accepted` and `rejected` are the ends of loop closures, (k, 2, 2) x, y [m]; `locations` are names with
-    their poses. All are in the map's frame. Raises InputError for an unusable grid.
+    [m] first, and a row of NaN where it is interrupted; `accepted` and `rejected` are the ends of loop closures,
+    (k, 2, 2) x, y [m]; `locations` are names with their poses; `captions` are texts and where they begin. All are in
+    the map's frame. Raises InputError for an unusable grid.
     """
     grid, scale = _scaled(grey_picture(cells))
     canvas = _Canvas(grid, resolution / scale, origin)
@@ -82,10 +92,15 @@ def draw_picture(
             canvas.line(line, colour, 2)
     way = np.asarray(trajectory, dtype=np.float64)
     if way.size:
-        canvas.line(way[:, :2], _WAY, 2)
-        canvas.dot(way[0, :2], _START, 5)
+        pieces = _pieces(way[:, :2])
+        for piece in pieces:
+            canvas.line(piece, _WAY, 2)
+        if pieces:
+            canvas.dot(pieces[0][0], _START, 5)
     for name, pose in locations:
         canvas.place(name, pose)
+    for text, corner in captions:
+        canvas.text(text, corner)
     canvas.legend(
         [
             ("trajectory", _WAY, way.size),
@@ -95,6 +110,13 @@ def draw_picture(
         ]
     )
     return _png(canvas)
+
+
+def _pieces(way: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """What lies between rows that are not finite."""
+    breaks = np.flatnonzero(~np.isfinite(way).all(axis=1))
+    pieces = np.split(way, breaks)
+    return [rows for piece in pieces if len(rows := piece[np.isfinite(piece).all(axis=1)])]
 
 
 def write_closures_picture(
@@ -186,6 +208,11 @@ class _Canvas:
         self.dot(centre, _PLACE, 5)
         ((x, y),) = self._pixels(centre.reshape(1, 2))
         self._draw.text((x + 8, y - 20), name, fill=_INK, font=self._font, stroke_width=3, stroke_fill=_PAPER)
+
+    def text(self, text: str, corner: tuple[float, float]) -> None:
+        """Its lower left corner is there."""
+        ((x, y),) = self._pixels(np.array([corner]))
+        self._draw.text((x, y - 20), text, fill=_INK, font=self._font, stroke_width=3, stroke_fill=_PAPER)
 
     def legend(self, entries: Sequence[tuple[str, tuple[int, int, int], int]]) -> None:
         """The scale bar and, for what the picture holds, its colours, in the strip below the map."""

@@ -5,6 +5,7 @@
 from collections.abc import Iterator
 
 from oort._core import Parameters
+from oort.diagnosis import loose_parts
 from oort.errors import InputError
 from oort.export import write_map_server
 from oort.offline.drawing import draw_map
@@ -16,8 +17,10 @@ def render(map_path: str, prefix: str, parameters: Parameters, *, ignore_checksu
 
     Raises MapFileError, InputError if there is nothing to draw, and OortError if a file cannot be written.
     """
-    grids, notes = draw_map(open_map(map_path, ignore_checksum=ignore_checksum), parameters)
+    map_ = open_map(map_path, ignore_checksum=ignore_checksum)
+    grids, notes = draw_map(map_, parameters)
     yield from notes
+    yield from (str(trouble) for trouble in loose_parts(map_))
     for grid, name in zip(grids, ("map", "map_cleaned"), strict=True):
         if not grid.cells.size:
             raise InputError(f"{map_path}: there is nothing to draw, for no scan of this map has a return")

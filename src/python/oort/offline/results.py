@@ -18,6 +18,7 @@ from oort.evaluation.histograms import make_histograms, panels
 from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
 from oort.export.chart import write_chart
 from oort.export.files import write_atomically
+from oort.offline.beside import Beside, set_beside
 from oort.offline.drawing import draw_map
 from oort.offline.outputs import Outputs
 from oort.offline.trajectory import TrajectoryRecorder
@@ -100,20 +101,22 @@ def _write_pictures(
     drive: Drive, out: Path, map_: Map, grid: OccupancyGrid, base_poses: NDArray[np.float64], outputs: Outputs
 ) -> None:
     origin = (*grid.origin, 0.0)
-    closures = _closure_ends(map_)
+    beside = set_beside(map_, grid, drive.parameters)
+    closures = _closure_ends(map_, beside)
     on = map_.switchable_edges["switch"] >= SWITCH_ON
     outputs.write("map.pgm map.yaml", lambda: write_map_server(out / "map", grid.cells, grid.resolution, origin))
     outputs.write(
         "map.png",
         lambda: write_picture(
             out / "map.png",
-            grid.cells,
+            beside.cells,
             grid.resolution,
             origin,
-            trajectory=base_poses,
+            trajectory=_way(drive, base_poses, beside),
             accepted=closures[on],
             rejected=closures[~on],
             locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
+            captions=beside.captions,
         ),
     )
     if drive.keep_attempts:
@@ -176,11 +179,22 @@ def _names(drive: Drive) -> list[tuple[str, str]]:
     return [(space, id) for space, id, *_ in drive.session.mapper.locations]
 
 
-def _closure_ends(map_: Map) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """(k, 2, 2): where the two nodes of each closure are."""
+def _closure_ends(map_: Map, beside: Beside) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """(k, 2, 2): where each closure is in the picture; both ends at the first node if they are of different parts."""
     edges = map_.switchable_edges
-    positions = map_.node_poses[:, :2]
-    return np.stack([positions[edges["i"]], positions[edges["j"]]], axis=1)
+    positions = map_.node_poses[:, :2] + np.nan_to_num(beside.shift)
+    i, j = edges["i"], np.where(beside.part[edges["i"]] == beside.part[edges["j"]], edges["j"], edges["i"])
+    return np.stack([positions[i], positions[j]], axis=1)
+
+
+def _way(drive: Drive, base_poses: NDArray[np.float64], beside: Beside) -> NDArray[np.float64]:
+    """(n, 2) the trajectory in the picture, interrupted from part to part."""
+    carriers = drive.recorder.carriers()
+    if not len(beside.part) or (carriers < 0).all():
+        return base_poses[:, :2]
+    way = base_poses[:, :2] + beside.shift[carriers]
+    begins = np.flatnonzero(np.diff(beside.part[carriers])) + 1
+    return np.insert(way, begins, np.nan, axis=0)
 
 
 def pose_graph(map_: Map) -> PoseGraph:

@@ -57,6 +57,15 @@ class TrajectoryRecorder:
                 x, y, theta = compose(moved[node], self._relative[scan]).tolist()
                 self._nodes[scan], self._relative[scan] = carriers[node], (x, y, theta)
 
+    def carriers(self) -> NDArray[np.int64]:
+        """(n,) the node that carries each scan, or the one of the scan next to it that has one; -1 if none has."""
+        nodes = np.array(self._nodes, dtype=np.int64)
+        known = np.flatnonzero(nodes != _NO_NODE)
+        if not len(known):
+            return nodes
+        latest = np.maximum.accumulate(np.where(nodes != _NO_NODE, np.arange(len(nodes)), known[0]))
+        return nodes[latest]
+
     def base_poses(self, map_: Map, first_node: int = 0) -> NDArray[np.float64]:
         """T_map_base of every scan, (n, 3), in their order, at the map's solution.
 

@@ -37,8 +37,9 @@ struct Peaks {
 /// The best poses of a wide window that are apart from each other, with no guess among them: best-first branch and
 /// bound (Hess et al. 2016, section V-B) that goes on after the best one. The window is a box about `middle`; its half
 /// width in heading is cut at half a turn. Deterministic; cost bounded by `max_expansions`.
+/// `on_lookups` is told now and then how many more table values were read.
 /// Throws std::invalid_argument on a middle or window that is not finite.
 Peaks find_peaks(const Table& table, const Points& body, const Pose& middle, const Window& window,
-                 const PeakParams& params);
+                 const PeakParams& params, const OnLookups& on_lookups = {});
 
 }  // namespace frsm

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The Oort authors
+// SPDX-License-Identifier: Apache-2.0
+#include "oort/mapper/place_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "oort/geometry/errors.hpp"
+#include "oort/map/trajectory_walk.hpp"
+#include "oort/mapper/tuning.hpp"
+#include "oort/matching/frsm_adapter.hpp"
+
+namespace oort {
+namespace {
+
+/// What a node and those before it saw, oldest first, each where the trajectory has it as seen from the node.
+std::vector<PlacedScan> views_of(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
+                                 std::uint64_t node) {
+  const std::size_t count = std::min<std::size_t>(MapperTuning::kNodesPerSearch, node - first + 1);
+  const std::vector<PlacedNode> nodes = walk_trajectory(map, segments, node, Direction::kBackward, count);
+  std::vector<PlacedScan> views;
+  for (auto placed = nodes.rbegin(); placed != nodes.rend(); ++placed) {
+    views.push_back({map.clouds[placed->node], placed->T_origin_node});
+  }
+  return views;
+}
+
+/// Of following every beam of the views through a grid.
+double work_of_weighing(const std::vector<PlacedScan>& views, double cell) {
+  double steps = 0.0;
+  for (const PlacedScan& view : views) {
+    for (const frsm::Point& point : returns_of(view.cloud)) steps += std::hypot(point.x, point.y) / cell;
+  }
+  return MapperTuning::kWorkPerRayStep * steps;
+}
+
+}  // namespace
+
+bool PlaceFinder::use(const Map& map, const std::vector<std::uint64_t>& nodes, bool anew, WorkMeter* meter) {
+  if (nodes.empty()) return false;
+  const bool is_older = reference_ && nodes_.back() <= nodes.back();
+  const bool is_like_new = is_older && map.graph.nodes.size() < drawn_at_ + nodes_.size() / MapperTuning::kRedrawParts;
+  if (is_older && ((is_like_new && !anew) || (nodes_ == nodes && !has_moved(map)))) return true;
+  draw(map, nodes, meter);
+  return reference_ != nullptr;
+}
+
+bool PlaceFinder::has_moved(const Map& map) const {
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const Pose2 moved = between(poses_[k], map.graph.nodes[nodes_[k]].pose);
+    if (moved.translation().norm() > MapperTuning::kReferenceMoved) return true;
+  }
+  return false;
+}
+
+void PlaceFinder::draw(const Map& map, const std::vector<std::uint64_t>& nodes, WorkMeter* meter) {
+  forget();
+  nodes_ = nodes;
+  drawn_at_ = map.graph.nodes.size();
+  std::uint64_t points = 0;
+  for (const std::uint64_t node : nodes_) {
+    poses_.push_back(map.graph.nodes[node].pose);
+    points += map.clouds[node].points.size();
+  }
+  charge(meter, MapperTuning::kWorkPerReferencePoint * static_cast<double>(points));
+  try {
+    reference_ = std::make_shared<const ReferenceMap>(map, nodes_, parameters_);
+    relocalizer_ = std::make_unique<Relocalizer>(reference_, parameters_);
+  } catch (const InputError&) {
+    forget();
+  }
+}
+
+void PlaceFinder::forget() {
+  nodes_.clear();
+  poses_.clear();
+  reference_.reset();
+  relocalizer_.reset();
+}
+
+std::optional<FoundPlace> PlaceFinder::find(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
+                                            std::uint64_t node, WorkMeter* meter) const {
+  const SearchEffort effort{MapperTuning::kRivalScore, MapperTuning::kSearchPoints, MapperTuning::kSearchExpansions};
+  frsm::OnLookups on_lookups;
+  if (meter != nullptr) {
+    on_lookups = [meter](std::uint64_t lookups) {
+      charge(meter, MapperTuning::kWorkPerLookup * static_cast<double>(lookups));
+    };
+  }
+  const std::vector<PlacedScan> views = views_of(map, segments, first, node);
+  charge(meter, MapperTuning::kWeighedPlaces * work_of_weighing(views, reference_->space().limits().resolution));
+  const Relocalization found = relocalizer_->find(views, effort, on_lookups);
+  if (!found.found()) return std::nullopt;
+  const Pose2& T_drawn_node = found.best->T_map_sensor;
+  const std::size_t nearest = nearest_drawn(T_drawn_node);
+  const Pose2 T_map_drawn = map.graph.nodes[nodes_[nearest]].pose * inverse(poses_[nearest]);
+  return FoundPlace{node, T_map_drawn * T_drawn_node, rotate_covariance(found.best->covariance, T_map_drawn.theta)};
+}
+
+bool PlaceFinder::contradicts(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
+                              std::uint64_t node, WorkMeter* meter) const {
+  const std::vector<PlacedScan> views = views_of(map, segments, first, node);
+  charge(meter, work_of_weighing(views, reference_->space().limits().resolution));
+  const std::size_t nearest = nearest_to(map, map.graph.nodes[node].pose);
+  const Pose2 T_drawn_node =
+      poses_[nearest] * between(map.graph.nodes[nodes_[nearest]].pose, map.graph.nodes[node].pose);
+  Support support;
+  for (const PlacedScan& view : views) {
+    reference_->weigh(view.cloud, T_drawn_node * view.T_odom_sensor, support);
+  }
+  return support.blocked + support.in_free > MapperTuning::kContradictingShare * support.points;
+}
+
+Closure PlaceFinder::closure(const FoundPlace& place, const Map& map) const {
+  const std::uint64_t nearest = nodes_[nearest_to(map, place.T_map_node)];
+  const Eigen::Vector3d sigma(MapperTuning::kAnswerSigma, MapperTuning::kAnswerSigma, MapperTuning::kAnswerSigmaTheta);
+  const Eigen::Matrix3d covariance = rotate_covariance(place.covariance, -place.T_map_node.theta);
+  return {place.node, nearest, between(place.T_map_node, map.graph.nodes[nearest].pose),
+          covariance + Eigen::Matrix3d(sigma.cwiseAbs2().asDiagonal()), 1.0};
+}
+
+/// Of the drawn nodes, by their place among them: as they were drawn,
+std::size_t PlaceFinder::nearest_drawn(const Pose2& T_drawn_node) const {
+  const auto distance = [&](const Pose2& pose) { return (pose.translation() - T_drawn_node.translation()).norm(); };
+  return static_cast<std::size_t>(
+      std::min_element(poses_.begin(), poses_.end(),
+                       [&](const Pose2& a, const Pose2& b) { return distance(a) < distance(b); }) -
+      poses_.begin());
+}
+
+/// and as they are.
+std::size_t PlaceFinder::nearest_to(const Map& map, const Pose2& T_map_node) const {
+  const auto distance = [&](std::uint64_t node) {
+    return (map.graph.nodes[node].pose.translation() - T_map_node.translation()).norm();
+  };
+  return static_cast<std::size_t>(
+      std::min_element(nodes_.begin(), nodes_.end(),
+                       [&](std::uint64_t a, std::uint64_t b) { return distance(a) < distance(b); }) -
+      nodes_.begin());
+}
+
+bool agree(const FoundPlace& a, const FoundPlace& b, const Pose2& T_a_b) {
+  const Pose2 apart = between(a.T_map_node * T_a_b, b.T_map_node);
+  return apart.translation().norm() <= MapperTuning::kSameAnswer &&
+         std::abs(apart.theta) <= MapperTuning::kSameAnswerAngle;
+}
+
+}  // namespace oort
