@@ -119,7 +119,7 @@ py::dict dict_of(const MapperStatistics& statistics) {
   dict["scans_too_small"] = statistics.local.scans_too_small;
   dict["scans_matched"] = statistics.trajectory.scans_matched;
   dict["nodes"] = statistics.trajectory.nodes;
-  dict["odometry_links"] = statistics.trajectory.odometry_links;
+  dict["odometry_links"] = statistics.trajectory.odometry_edges;
   dict["match_rejections"] = dict_of(statistics.trajectory.match_rejections);
   dict["contradictions"] = statistics.trajectory.contradictions;
   dict["tracking"] = dict_of(statistics.tracking);

@@ -108,7 +108,7 @@ TEST_F(GridTrackerTest, DoesNotContradictOdometry) {
     const TrackedScan tracked = incremental.track(points, 0.1, {});
     EXPECT_TRUE(incremental.is_placed(tracked)) << matcher;
     EXPECT_GT(tracked.extent, 0.5);
-    EXPECT_EQ(incremental.link({}, {0.4, 0.0, 0.0}, tracked, false).contradicts_odometry,
+    EXPECT_EQ(incremental.make_edge({}, {0.4, 0.0, 0.0}, tracked, false).contradicts_odometry,
               builder.scanmatcher == "frsm_matcher");
   }
 }

@@ -36,7 +36,7 @@ class LinkTest : public ::testing::Test {
 
   /// The verdict where the match differs from what odometry says by `T_odometry_match`.
   Rejection rejection(const Pose2& T_odometry_match) {
-    return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node, false).rejection;
+    return builder.make_edge({}, node.T_local_sensor * inverse(T_odometry_match), node, false).rejection;
   }
 
   /// Takes new parameters.
@@ -64,11 +64,11 @@ TEST_F(LinkTest, FollowsTheSensor) {
 
 TEST_F(LinkTest, MatchThatAgreesWithOdometryIsBelieved) {
   follow();
-  const MatchLink link = builder.link({}, motion, node, false);
-  EXPECT_EQ(link.rejection, Rejection::kNone);
-  EXPECT_DOUBLE_EQ(link.T_anchor_node.x, node.T_local_sensor.x);
-  EXPECT_EQ(link.covariance, link.covariance.transpose());
-  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.covariance).eigenvalues().minCoeff(), 0.0);
+  const MatchedEdge edge = builder.make_edge({}, motion, node, false);
+  EXPECT_EQ(edge.rejection, Rejection::kNone);
+  EXPECT_DOUBLE_EQ(edge.T_anchor_node.x, node.T_local_sensor.x);
+  EXPECT_EQ(edge.covariance, edge.covariance.transpose());
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(edge.covariance).eigenvalues().minCoeff(), 0.0);
 }
 
 TEST_F(LinkTest, DocumentedLimits) {
@@ -122,9 +122,9 @@ TEST_F(LinkTest, WithoutAMatchTheReasonIsTheMatchersStatus) {
   follow();
   node = builder.track({}, 1.0, kStep);
   EXPECT_FALSE(node.usable());
-  EXPECT_EQ(builder.link({}, motion * kStep, node, false).rejection, Rejection::kEmptyScan);
+  EXPECT_EQ(builder.make_edge({}, motion * kStep, node, false).rejection, Rejection::kEmptyScan);
   node = builder.track({{1.0, 0.0}, {1.0, 0.1}, {1.0, 0.2}}, 1.1, kStep);
-  EXPECT_EQ(builder.link({}, motion * kStep * kStep, node, false).rejection, Rejection::kTooFewPoints);
+  EXPECT_EQ(builder.make_edge({}, motion * kStep * kStep, node, false).rejection, Rejection::kTooFewPoints);
 }
 
 TEST_F(LinkTest, CorrectionCountsForTheNextScan) {
@@ -170,7 +170,7 @@ TEST_F(LinkTest, MotionModelGrowsWithTheWay) {
 
 TEST_F(LinkTest, OdometryFarOffAGoodMatchContradictsIt) {
   const auto contradicts = [&](const Pose2& T_odometry_match) {
-    return builder.link({}, node.T_local_sensor * inverse(T_odometry_match), node, false).contradicts_odometry;
+    return builder.make_edge({}, node.T_local_sensor * inverse(T_odometry_match), node, false).contradicts_odometry;
   };
   follow();
   filter.y_abs_accept = filter.theta_abs_accept = filter.x_max_accept = 2.0;
@@ -239,7 +239,7 @@ TEST_F(LinkTest, WhatIsLearnedOfOdometryHoldsUnlessScansSpeakAgainstIt) {
   set_parameter(parameters, "incremental_graph_builder.odometry_noise.least_learned", 0.2);
   restart();
   const Eigen::Matrix3d configured = builder.odometry_covariance(motion);
-  for (int k = 0; k < 50; ++k) builder.link({}, motion, node, false);
+  for (int k = 0; k < 50; ++k) builder.make_edge({}, motion, node, false);
   EXPECT_LT(builder.odometry_covariance(motion)(0, 0), 0.5 * configured(0, 0));
   EXPECT_LT(builder.odometry_covariance(motion, Rejection::kTooFewPoints)(0, 0), 0.5 * configured(0, 0));
   EXPECT_TRUE(builder.odometry_covariance(motion, Rejection::kLowHits).isApprox(configured));
@@ -248,8 +248,8 @@ TEST_F(LinkTest, WhatIsLearnedOfOdometryHoldsUnlessScansSpeakAgainstIt) {
 TEST_F(LinkTest, OdometryThatIsLinkedDoesNotCountTwice) {
   set_parameter(parameters, "incremental_graph_builder.odometry_model", std::string("motion"));
   restart();
-  const Eigen::Matrix3d once = builder.link({}, motion, node, true).covariance.inverse();
-  const Eigen::Matrix3d both = builder.link({}, motion, node, false).covariance.inverse();
+  const Eigen::Matrix3d once = builder.make_edge({}, motion, node, true).covariance.inverse();
+  const Eigen::Matrix3d both = builder.make_edge({}, motion, node, false).covariance.inverse();
   const Eigen::Matrix3d odometry = builder.odometry_covariance(motion).inverse();
   // Up to what is added to the heading afterwards, the two differ by odometry's information.
   EXPECT_NEAR((both - once)(0, 0), odometry(0, 0), 0.1 * odometry(0, 0));
@@ -268,16 +268,16 @@ TEST_F(CorridorTest, WhatTheMatchDoesNotSeeIsLeftToOdometry) {
   parameters.incremental_graph_builder.frsm_matcher.match_error_xy = 0.0;  // what the match itself shows
   builder = IncrementalGraphBuilder(parameters);
   follow({0.0, 0.0, 0.5});  // the corridor's axis is at -0.5 rad in the local frame
-  const MatchLink link = builder.link({}, motion, node, false);
-  EXPECT_EQ(link.rejection, Rejection::kNone);
+  const MatchedEdge edge = builder.make_edge({}, motion, node, false);
+  EXPECT_EQ(edge.rejection, Rejection::kNone);
   const Eigen::Vector2d along(std::cos(0.5), -std::sin(0.5));
   const Eigen::Vector2d across(std::sin(0.5), std::cos(0.5));
-  const Eigen::Matrix2d xy = link.covariance.topLeftCorner<2, 2>();
+  const Eigen::Matrix2d xy = edge.covariance.topLeftCorner<2, 2>();
   const double variance = builder.odometry_covariance(motion)(0, 0);
   EXPECT_NEAR(along.dot(xy * along), variance, 0.1 * variance);
   EXPECT_LT(across.dot(xy * across), 0.1 * variance);
   // and the pose follows odometry along it
-  EXPECT_NEAR(along.dot((link.T_anchor_node.translation() - motion.translation())), 0.0, 0.01);
+  EXPECT_NEAR(along.dot((edge.T_anchor_node.translation() - motion.translation())), 0.0, 0.01);
 }
 
 TEST_F(CorridorTest, OfAContradictionOdometryIsTakenForWhatTheMatchDoesNotSee) {
@@ -287,17 +287,17 @@ TEST_F(CorridorTest, OfAContradictionOdometryIsTakenForWhatTheMatchDoesNotSee) {
   builder = IncrementalGraphBuilder(parameters);
   follow({0.0, 0.0, 0.0});
   const Pose2 odometry = node.T_local_sensor * Pose2{1.0, 0.6, 0.0};  // 1 m more along the walls, 0.6 m across
-  const MatchLink link = builder.link({}, odometry, node, false);
-  EXPECT_TRUE(link.contradicts_odometry);
-  EXPECT_NEAR(link.T_anchor_node_weighed.x, odometry.x, 0.3);
-  EXPECT_NEAR(link.T_anchor_node_weighed.y, link.T_anchor_node.y, 0.1);
+  const MatchedEdge edge = builder.make_edge({}, odometry, node, false);
+  EXPECT_TRUE(edge.contradicts_odometry);
+  EXPECT_NEAR(edge.T_anchor_node_weighed.x, odometry.x, 0.3);
+  EXPECT_NEAR(edge.T_anchor_node_weighed.y, edge.T_anchor_node.y, 0.1);
 }
 
 TEST_F(CorridorTest, CovarianceIsAlongTheAxesOfTheAnchor) {
   follow({0.0, 0.0, 0.0});
   const Pose2 T_local_anchor{0.0, 0.0, 0.5 * testing::kPi};
-  const MatchLink straight = builder.link({}, motion, node, false);
-  const MatchLink turned = builder.link(T_local_anchor, between(T_local_anchor, motion), node, false);
+  const MatchedEdge straight = builder.make_edge({}, motion, node, false);
+  const MatchedEdge turned = builder.make_edge(T_local_anchor, between(T_local_anchor, motion), node, false);
   EXPECT_NEAR(turned.covariance(1, 1), straight.covariance(0, 0), 1e-9);
   EXPECT_NEAR(turned.covariance(0, 0), straight.covariance(1, 1), 1e-9);
   EXPECT_GT(straight.covariance(0, 0), 5.0 * straight.covariance(1, 1));

@@ -74,7 +74,7 @@ TEST_F(MapperTest, ExactOdometryGivesTheTruth) {
     const Errors errors = node_errors(mapper.map(), truth);
     EXPECT_LT(errors.position, 0.03);
     EXPECT_LT(errors.heading, 0.015);
-    EXPECT_EQ(mapper.statistics().trajectory.odometry_links, 0u);
+    EXPECT_EQ(mapper.statistics().trajectory.odometry_edges, 0u);
     EXPECT_GT(mapper.statistics().global.loops.accepted, 0u);
   }
 }
@@ -256,9 +256,9 @@ TEST_F(MapperTest, MatchAgainstTheOdometryBecomesAnOdometryLink) {
   drive(mapper, world, truth, odometry);
   const Map& map = mapper.map();
   const MapperStatistics& statistics = mapper.statistics();
-  EXPECT_GE(statistics.trajectory.odometry_links, 1u);
+  EXPECT_GE(statistics.trajectory.odometry_edges, 1u);
   EXPECT_EQ(statistics.trajectory.match_rejections[Rejection::kNone], 0u);
-  EXPECT_EQ(statistics.trajectory.match_rejections.total(), statistics.trajectory.odometry_links);
+  EXPECT_EQ(statistics.trajectory.match_rejections.total(), statistics.trajectory.odometry_edges);
   const auto jump = std::find_if(map.graph.edges.begin(), map.graph.edges.end(),
                                  [](const Edge& e) { return e.constraint.type == ConstraintType::kOdometry; });
   ASSERT_NE(jump, map.graph.edges.end());

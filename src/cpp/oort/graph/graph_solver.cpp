@@ -10,8 +10,9 @@
 
 namespace oort {
 
-GraphSolver::GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<Link> links, double scale)
-    : poses_(std::move(poses)), variables_(std::move(variables)), links_(std::move(links)), scale_(scale) {
+GraphSolver::GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<SolverEdge> edges,
+                         double scale)
+    : poses_(std::move(poses)), variables_(std::move(variables)), edges_(std::move(edges)), scale_(scale) {
   for (const int variable : variables_) variable_count_ = std::max(variable_count_, variable + 1);
   cholesky_.analyze(static_cast<std::size_t>(variable_count_), {});
 }
@@ -23,9 +24,9 @@ bool GraphSolver::use(const std::vector<bool>& on) {
   active_.clear();
   pair_of_.clear();
   std::vector<BlockPair> pairs;
-  for (std::size_t k = 0; k < links_.size(); ++k) {
-    links_[k].on = on[k];
-    const int i = variables_[links_[k].i], j = variables_[links_[k].j];
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    edges_[k].on = on[k];
+    const int i = variables_[edges_[k].i], j = variables_[edges_[k].j];
     if (!on[k] || (i < 0 && j < 0)) continue;
     active_.push_back(k);
     pair_of_.push_back(pairs.size());
@@ -41,7 +42,7 @@ GraphSolver::Progress GraphSolver::step(double tolerance) {
   charge(meter_, GraphTuning::kWorkPerEdge * static_cast<double>(active_.size()));
   linearize();
   std::vector<double> switches;
-  for (const std::size_t k : active_) switches.push_back(links_[k].s);
+  for (const std::size_t k : active_) switches.push_back(edges_[k].s);
   const double before = cost(poses_, switches);
   std::vector<Eigen::Vector3d> damping(descent_.size());
   for (; damping_ <= GraphTuning::kMaxDamping;
@@ -63,7 +64,7 @@ GraphSolver::Progress GraphSolver::step(double tolerance) {
     switches = moved_switches();
     if (cost(poses, switches) <= before) {
       poses_ = std::move(poses);
-      for (std::size_t a = 0; a < active_.size(); ++a) links_[active_[a]].s = switches[a];
+      for (std::size_t a = 0; a < active_.size(); ++a) edges_[active_[a]].s = switches[a];
       damping_ = std::max(GraphTuning::kDampingDecay * damping_, GraphTuning::kMinDamping);
       return small ? Progress::kConverged : Progress::kMoved;
     }
@@ -72,18 +73,18 @@ GraphSolver::Progress GraphSolver::step(double tolerance) {
   return Progress::kStuck;
 }
 
-double GraphSolver::squared_error(const Link& link, const std::vector<Pose2>& poses) const {
-  return (link.W * constraint_error(poses[link.i], poses[link.j], link.T_i_j)).squaredNorm();
+double GraphSolver::squared_error(const SolverEdge& edge, const std::vector<Pose2>& poses) const {
+  return (edge.W * constraint_error(poses[edge.i], poses[edge.j], edge.T_i_j)).squaredNorm();
 }
 
 double GraphSolver::cost(const std::vector<Pose2>& poses, const std::vector<double>& switches) const {
   double sum = 0.0;
   for (std::size_t a = 0; a < active_.size(); ++a) {
-    const Link& link = links_[active_[a]];
-    const double chi2 = squared_error(link, poses);
-    if (link.switchable) {
+    const SolverEdge& edge = edges_[active_[a]];
+    const double chi2 = squared_error(edge, poses);
+    if (edge.switchable) {
       const double s = switches[a];
-      sum += s * s * chi2 + scale_of(link) * (1.0 - s) * (1.0 - s);
+      sum += s * s * chi2 + scale_of(edge) * (1.0 - s) * (1.0 - s);
     } else {
       sum += chi2;
     }
@@ -95,32 +96,32 @@ void GraphSolver::linearize() {
   cholesky_.set_zero();
   descent_.assign(static_cast<std::size_t>(variable_count_), Eigen::Vector3d::Zero());
   eliminated_.clear();
-  for (std::size_t place = 0; place < active_.size(); ++place) add_link(place);
+  for (std::size_t place = 0; place < active_.size(); ++place) add_edge(place);
 }
 
-void GraphSolver::add_link(std::size_t place) {
-  const Link& link = links_[active_[place]];
-  const Pose2 &T_map_i = poses_[link.i], &T_map_j = poses_[link.j];
-  const Eigen::Vector3d r = link.W * constraint_error(T_map_i, T_map_j, link.T_i_j);
+void GraphSolver::add_edge(std::size_t place) {
+  const SolverEdge& edge = edges_[active_[place]];
+  const Pose2 &T_map_i = poses_[edge.i], &T_map_j = poses_[edge.j];
+  const Eigen::Vector3d r = edge.W * constraint_error(T_map_i, T_map_j, edge.T_i_j);
   const ErrorJacobians jacobians = constraint_jacobians(T_map_i, T_map_j);
-  const Eigen::Matrix3d A_i = link.W * jacobians.of_i;
-  const Eigen::Matrix3d A_j = link.W * jacobians.of_j;
+  const Eigen::Matrix3d A_i = edge.W * jacobians.of_i;
+  const Eigen::Matrix3d A_j = edge.W * jacobians.of_j;
   Eigen::Matrix3d H_ii = A_i.transpose() * A_i;
   Eigen::Matrix3d H_ij = A_i.transpose() * A_j;
   Eigen::Matrix3d H_jj = A_j.transpose() * A_j;
   const Eigen::RowVector3d rA_i = r.transpose() * A_i;
   const Eigen::RowVector3d rA_j = r.transpose() * A_j;
   double pull = 1.0;
-  if (link.switchable) {
-    const double s = link.s, chi2 = r.squaredNorm(), h = chi2 + scale_of(link);
-    const double g = s * chi2 - scale_of(link) * (1.0 - s);
+  if (edge.switchable) {
+    const double s = edge.s, chi2 = r.squaredNorm(), h = chi2 + scale_of(edge);
+    const double g = s * chi2 - scale_of(edge) * (1.0 - s);
     H_ii = s * s * (H_ii - rA_i.transpose() * (rA_i / h));
     H_ij = s * s * (H_ij - rA_i.transpose() * (rA_j / h));
     H_jj = s * s * (H_jj - rA_j.transpose() * (rA_j / h));
     pull = s * s - s * g / h;
     eliminated_.push_back({place, g, h, rA_i, rA_j});
   }
-  const int i = variables_[link.i], j = variables_[link.j];
+  const int i = variables_[edge.i], j = variables_[edge.j];
   if (i >= 0) {
     cholesky_.add_diagonal(i, H_ii);
     descent_[i] -= pull * rA_i.transpose();
@@ -144,13 +145,13 @@ std::vector<Pose2> GraphSolver::moved_poses() const {
 
 std::vector<double> GraphSolver::moved_switches() const {
   std::vector<double> switches;
-  for (const std::size_t k : active_) switches.push_back(links_[k].s);
+  for (const std::size_t k : active_) switches.push_back(edges_[k].s);
   for (const Eliminated& e : eliminated_) {
-    const Link& link = links_[active_[e.link]];
+    const SolverEdge& edge = edges_[active_[e.edge]];
     double change = e.gradient;
-    if (const int i = variables_[link.i]; i >= 0) change += link.s * e.rA_i.dot(delta_[i]);
-    if (const int j = variables_[link.j]; j >= 0) change += link.s * e.rA_j.dot(delta_[j]);
-    switches[e.link] -= change / e.curvature;
+    if (const int i = variables_[edge.i]; i >= 0) change += edge.s * e.rA_i.dot(delta_[i]);
+    if (const int j = variables_[edge.j]; j >= 0) change += edge.s * e.rA_j.dot(delta_[j]);
+    switches[e.edge] -= change / e.curvature;
   }
   return switches;
 }

@@ -14,7 +14,7 @@
 namespace oort {
 
 /// An edge, ready to be solved with.
-struct Link {
+struct SolverEdge {
   std::size_t i = 0;  ///< nodes
   std::size_t j = 0;
   Pose2 T_i_j;
@@ -46,27 +46,27 @@ class GraphSolver {
   enum class Progress { kMoved, kConverged, kStuck };
 
   /// `variables` has one number per node: which variable its pose is, counting up from 0, or -1 if it is held.
-  GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<Link> links, double scale);
+  GraphSolver(std::vector<Pose2> poses, std::vector<int> variables, std::vector<SolverEdge> edges, double scale);
 
   /// Who counts the work of use() and step(); may be null.
   void set_meter(WorkMeter* meter) { meter_ = meter; }
 
   const std::vector<Pose2>& poses() const { return poses_; }
-  const std::vector<Link>& links() const { return links_; }
+  const std::vector<SolverEdge>& edges() const { return edges_; }
   bool is_held(std::size_t node) const { return variables_[node] < 0; }
   /// |W e|^2 at the present poses.
-  double squared_error(const Link& link) const { return squared_error(link, poses_); }
+  double squared_error(const SolverEdge& edge) const { return squared_error(edge, poses_); }
   /// The switch at which an edge costs least with the poses held: scale / (scale + chi2).
-  double best_switch(const Link& link, double chi2) const { return scale_of(link) / (scale_of(link) + chi2); }
+  double best_switch(const SolverEdge& edge, double chi2) const { return scale_of(edge) / (scale_of(edge) + chi2); }
 
   /// The chi2 at which a switch (above 0) is the best.
-  double squared_error_at(const Link& link, double s) const { return scale_of(link) * (1.0 - s) / s; }
+  double squared_error_at(const SolverEdge& edge, double s) const { return scale_of(edge) * (1.0 - s) / s; }
 
   void set_poses(std::vector<Pose2> poses) { poses_ = std::move(poses); }
   /// Whether the edge is one that may be switched off, for the steps to come.
-  void set_switchable(std::size_t link, bool switchable) { links_[link].switchable = switchable; }
+  void set_switchable(std::size_t edge, bool switchable) { edges_[edge].switchable = switchable; }
   /// Where a switch starts.
-  void set_switch(std::size_t link, double s) { links_[link].s = s; }
+  void set_switch(std::size_t edge, double s) { edges_[edge].s = s; }
 
   /// Says which edges take part (one flag for each). Returns whether that is anything new.
   bool use(const std::vector<bool>& on);
@@ -81,23 +81,23 @@ class GraphSolver {
  private:
   /// What the back substitution of a switch from the poses' step needs.
   struct Eliminated {
-    std::size_t link = 0;
+    std::size_t edge = 0;
     double gradient = 0.0;
     double curvature = 0.0;
     Eigen::RowVector3d rA_i, rA_j;
   };
 
-  double scale_of(const Link& link) const { return scale_ * link.firmness; }
-  double squared_error(const Link& link, const std::vector<Pose2>& poses) const;
+  double scale_of(const SolverEdge& edge) const { return scale_ * edge.firmness; }
+  double squared_error(const SolverEdge& edge, const std::vector<Pose2>& poses) const;
   double cost(const std::vector<Pose2>& poses, const std::vector<double>& switches) const;
   void linearize();
-  void add_link(std::size_t place);
+  void add_edge(std::size_t place);
   std::vector<Pose2> moved_poses() const;
   std::vector<double> moved_switches() const;
 
   std::vector<Pose2> poses_;
   std::vector<int> variables_;
-  std::vector<Link> links_;
+  std::vector<SolverEdge> edges_;
   double scale_;
   int variable_count_ = 0;
 

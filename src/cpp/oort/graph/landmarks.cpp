@@ -58,8 +58,8 @@ class HuberProblem {
   HuberProblem(const Graph& graph, const OptimizerOptions& options)
       : options_(options), loss_(options.huber_scale), problem_(borrowing()) {
     for (const Node& node : graph.nodes) nodes_.push_back(block_of(node.pose));  // before anything points there
-    for (const Edge& edge : graph.edges) add_link(edge, nullptr);
-    for (const SwitchableEdge& edge : graph.switchable_edges) add_link(edge, loss_of(edge));
+    for (const Edge& edge : graph.edges) add_edge(edge, nullptr);
+    for (const SwitchableEdge& edge : graph.switchable_edges) add_edge(edge, loss_of(edge));
     const std::vector<bool> anchors = find_anchors(graph);
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       problem_.AddParameterBlock(nodes_[k].data(), 3);
@@ -112,7 +112,7 @@ class HuberProblem {
   }
 
   template <typename AnyEdge>
-  void add_link(const AnyEdge& edge, ceres::LossFunction* loss) {
+  void add_edge(const AnyEdge& edge, ceres::LossFunction* loss) {
     const Eigen::Matrix3d W = whitening_or_throw(edge.constraint.covariance, options_.whitening, describe(edge));
     problem_.AddResidualBlock(new RelativePoseCost(edge.constraint.T_i_j, W), loss, nodes_[edge.i].data(),
                               nodes_[edge.j].data());

@@ -21,39 +21,39 @@ namespace {
 // Squared errors beyond this overflow once products of them are summed.
 constexpr double kLargestSquaredError = 1e100;
 
-/// The edge as a Link. InputError, naming the edge, if its covariance has no inverse or its error is too large to
-/// compute with.
+/// The edge as the solver takes it. InputError, naming the edge, if its covariance has no inverse or its error is too
+/// large to compute with.
 template <typename AnyEdge>
-Link link_of(const AnyEdge& edge, const std::vector<Node>& nodes, Whitening whitening) {
-  Link link;
-  link.i = edge.i;
-  link.j = edge.j;
-  link.T_i_j = edge.constraint.T_i_j;
+SolverEdge prepare(const AnyEdge& edge, const std::vector<Node>& nodes, Whitening whitening) {
+  SolverEdge prepared;
+  prepared.i = edge.i;
+  prepared.j = edge.j;
+  prepared.T_i_j = edge.constraint.T_i_j;
   try {
-    link.W = whitening_matrix(edge.constraint.covariance, whitening);
+    prepared.W = whitening_matrix(edge.constraint.covariance, whitening);
   } catch (const InputError& error) {
     throw InputError(describe(edge) + ": " + error.what());
   }
-  const Eigen::Vector3d error = constraint_error(nodes[edge.i].pose, nodes[edge.j].pose, link.T_i_j);
-  if (!((link.W * error).squaredNorm() < kLargestSquaredError)) {
+  const Eigen::Vector3d error = constraint_error(nodes[edge.i].pose, nodes[edge.j].pose, prepared.T_i_j);
+  if (!((prepared.W * error).squaredNorm() < kLargestSquaredError)) {
     throw InputError(describe(edge) + ": poses and measurement differ by far more standard deviations than can be" +
                      " squared; check their units");
   }
-  return link;
+  return prepared;
 }
 
 /// The edges, then the switchable edges.
-std::vector<Link> links_of(const Graph& graph, Whitening whitening) {
-  std::vector<Link> links;
-  links.reserve(graph.edges.size() + graph.switchable_edges.size());
-  for (const Edge& edge : graph.edges) links.push_back(link_of(edge, graph.nodes, whitening));
+std::vector<SolverEdge> solver_edges(const Graph& graph, Whitening whitening) {
+  std::vector<SolverEdge> edges;
+  edges.reserve(graph.edges.size() + graph.switchable_edges.size());
+  for (const Edge& edge : graph.edges) edges.push_back(prepare(edge, graph.nodes, whitening));
   for (const SwitchableEdge& edge : graph.switchable_edges) {
-    links.push_back(link_of(edge, graph.nodes, whitening));
-    links.back().switchable = true;
-    links.back().firmness = edge.firmness;
-    links.back().s = edge.switch_value;
+    edges.push_back(prepare(edge, graph.nodes, whitening));
+    edges.back().switchable = true;
+    edges.back().firmness = edge.firmness;
+    edges.back().s = edge.switch_value;
   }
-  return links;
+  return edges;
 }
 
 std::vector<int> variables_of(const Graph& graph, std::uint64_t first_free_node) {
@@ -110,8 +110,8 @@ OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
   }
   check_options(options);
   check_graph(graph);
-  GraphSolver solver(poses_of(graph), variables_of(graph, options.first_free_node), links_of(graph, options.whitening),
-                     options.switchable_constraint_scale);
+  GraphSolver solver(poses_of(graph), variables_of(graph, options.first_free_node),
+                     solver_edges(graph, options.whitening), options.switchable_constraint_scale);
   solver.set_meter(options.meter);
   OptimizerSummary summary;
   summary.initial_cost = robust_cost(solver);
@@ -123,9 +123,9 @@ OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
   summary.message = describe(search.progress());
   write_back(solver, graph);
   for (std::size_t k = 0; k < graph.switchable_edges.size(); ++k) {
-    const Link& link = solver.links()[graph.edges.size() + k];
-    const double chi2 = solver.squared_error(link);
-    graph.switchable_edges[k].switch_value = solver.best_switch(link, chi2);
+    const SolverEdge& edge = solver.edges()[graph.edges.size() + k];
+    const double chi2 = solver.squared_error(edge);
+    graph.switchable_edges[k].switch_value = solver.best_switch(edge, chi2);
     summary.chi_squared.push_back(chi2);
   }
   return summary;

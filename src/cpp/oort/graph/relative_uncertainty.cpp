@@ -28,15 +28,15 @@ Eigen::Matrix3d extend(const Eigen::Matrix3d& from_a, const Eigen::Vector2d& a_t
 }  // namespace
 
 void RelativeUncertainty::update(const Graph& graph) {
-  if (graph.nodes.size() < links_.size() || graph.edges.size() < edges_ ||
+  if (graph.nodes.size() < incident_.size() || graph.edges.size() < edges_ ||
       graph.switchable_edges.size() < switchable_edges_) {
-    links_.clear();
+    incident_.clear();
     edges_ = switchable_edges_ = 0;
   }
-  links_.resize(graph.nodes.size());
+  incident_.resize(graph.nodes.size());
   const auto add = [this](std::uint64_t i, std::uint64_t j, std::uint64_t edge, bool switchable) {
-    links_[i].push_back({j, edge, switchable});
-    links_[j].push_back({i, edge, switchable});
+    incident_[i].push_back({j, edge, switchable});
+    incident_[j].push_back({i, edge, switchable});
   };
   for (; edges_ < graph.edges.size(); ++edges_) add(graph.edges[edges_].i, graph.edges[edges_].j, edges_, false);
   for (; switchable_edges_ < graph.switchable_edges.size(); ++switchable_edges_) {
@@ -65,17 +65,18 @@ std::vector<std::optional<Eigen::Matrix3d>> RelativeUncertainty::from(const Grap
     frontier.pop();
     if (known[a]) continue;
     known[a] = reached[a];
-    for (const Link& link : links_[a]) {
-      if (known[link.to]) continue;
-      if (link.switchable && !graph.switchable_edges[link.edge].is_on()) continue;
-      const std::uint64_t i = link.switchable ? graph.switchable_edges[link.edge].i : graph.edges[link.edge].i;
-      const Constraint& constraint =
-          link.switchable ? graph.switchable_edges[link.edge].constraint : graph.edges[link.edge].constraint;
-      const Eigen::Vector2d a_to_b = graph.nodes[link.to].pose.translation() - graph.nodes[a].pose.translation();
+    for (const Incidence& incident : incident_[a]) {
+      if (known[incident.to]) continue;
+      if (incident.switchable && !graph.switchable_edges[incident.edge].is_on()) continue;
+      const std::uint64_t i =
+          incident.switchable ? graph.switchable_edges[incident.edge].i : graph.edges[incident.edge].i;
+      const Constraint& constraint = incident.switchable ? graph.switchable_edges[incident.edge].constraint
+                                                         : graph.edges[incident.edge].constraint;
+      const Eigen::Vector2d a_to_b = graph.nodes[incident.to].pose.translation() - graph.nodes[a].pose.translation();
       // Seen from the other end, the pose is inverted; its covariance along the axes of that end.
       const Eigen::Matrix3d along_a =
           a == i ? constraint.covariance : inverse_covariance(constraint.T_i_j, constraint.covariance);
-      reach(link.to, extend(*known[a], a_to_b, rotate_covariance(along_a, graph.nodes[a].pose.theta)));
+      reach(incident.to, extend(*known[a], a_to_b, rotate_covariance(along_a, graph.nodes[a].pose.theta)));
     }
   }
   return known;

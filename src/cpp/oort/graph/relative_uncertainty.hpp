@@ -22,12 +22,12 @@ class RelativeUncertainty {
   std::vector<std::optional<Eigen::Matrix3d>> from(const Graph& graph, std::uint64_t from) const;
 
  private:
-  struct Link {
+  struct Incidence {
     std::uint64_t to;
     std::uint64_t edge;
     bool switchable;
   };
-  std::vector<std::vector<Link>> links_;  // by node
+  std::vector<std::vector<Incidence>> incident_;  // edges, by node
   std::size_t edges_ = 0;
   std::size_t switchable_edges_ = 0;
 };

@@ -30,7 +30,7 @@ class Search {
 
  private:
   std::vector<std::size_t> large_innovations() const;
-  double agreeing_switch(const Link& link) const;
+  double agreeing_switch(const SolverEdge& edge) const;
   void switch_all_on();
   void find_best_start(const std::vector<std::size_t>& surprising);
   void believe(const std::vector<std::size_t>& edges, bool believe);

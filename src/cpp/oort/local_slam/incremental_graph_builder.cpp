@@ -43,9 +43,9 @@ OdometryModel odometry_model(const OdometryNoiseParameters& p, bool use_odometry
 
 }  // namespace
 
-LinkParameters link_parameters(const IncrementalGraphBuilderParameters& parameters) {
+EdgeParameters edge_parameters(const IncrementalGraphBuilderParameters& parameters) {
   const auto of = [](const auto& p, double min_inlier_ratio, bool odometry_is_prior) {
-    return LinkParameters{p.scanmatch_cov_scale,
+    return EdgeParameters{p.scanmatch_cov_scale,
                           p.inflate_scanmatch_cov_scale,
                           p.resume_scanmatch_cov_scale,
                           p.heading_error_per_meter,
@@ -63,7 +63,7 @@ IncrementalGraphBuilder::IncrementalGraphBuilder(const Parameters& parameters)
       motion_model_(parameters_.odometry_model == "motion"),
       odometry_model_(odometry_model(parameters_.odometry_noise, parameters.use_odometry),
                       parameters.use_odometry ? parameters_.odometry_noise.least_learned : 1.0),
-      link_(link_parameters(parameters_)),
+      edge_parameters_(edge_parameters(parameters_)),
       tracker_(make_scan_tracker(parameters)) {}
 
 void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
@@ -84,30 +84,30 @@ TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double ti
 }
 
 bool IncrementalGraphBuilder::is_placed(const TrackedScan& scan) const {
-  return scan.usable() && scan.inlier_ratio >= link_.min_inlier_ratio;
+  return scan.usable() && scan.inlier_ratio >= edge_parameters_.min_inlier_ratio;
 }
 
-MatchLink IncrementalGraphBuilder::link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
-                                        const TrackedScan& node, bool odometry_is_linked,
-                                        const Eigen::Matrix3d& doubt) {
-  MatchLink link;
-  link.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
+MatchedEdge IncrementalGraphBuilder::make_edge(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry,
+                                               const TrackedScan& node, bool odometry_has_edges,
+                                               const Eigen::Matrix3d& doubt) {
+  MatchedEdge edge;
+  edge.T_anchor_node = between(T_local_anchor, node.T_local_sensor);
   const Eigen::Matrix3d odometry = odometry_covariance(T_anchor_node_odometry) + doubt;
-  const Pose2 T_odometry_match = between(T_anchor_node_odometry, link.T_anchor_node);
-  link.rejection = match_rejection(parameters_, node, T_local_anchor, T_anchor_node_odometry);
-  const bool comparable = motion_model_ && link_.odometry_is_prior;
-  if (comparable && node.inlier_ratio >= LocalSlamTuning::kTellingInliers && is_too_far(link.rejection)) {
-    link.contradicts_odometry = true;
-    link.T_anchor_node_weighed = T_anchor_node_odometry;
+  const Pose2 T_odometry_match = between(T_anchor_node_odometry, edge.T_anchor_node);
+  edge.rejection = match_rejection(parameters_, node, T_local_anchor, T_anchor_node_odometry);
+  const bool comparable = motion_model_ && edge_parameters_.odometry_is_prior;
+  if (comparable && node.inlier_ratio >= LocalSlamTuning::kTellingInliers && is_too_far(edge.rejection)) {
+    edge.contradicts_odometry = true;
+    edge.T_anchor_node_weighed = T_anchor_node_odometry;
   }
-  link.covariance = match_covariance(node, T_local_anchor.theta, odometry_is_linked ? diffuse_covariance() : odometry,
-                                     link.T_anchor_node.translation().norm());
-  if (motion_model_ && link.rejection == Rejection::kNone) {
-    if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, doubt, link);
+  edge.covariance = match_covariance(node, T_local_anchor.theta, odometry_has_edges ? diffuse_covariance() : odometry,
+                                     edge.T_anchor_node.translation().norm());
+  if (motion_model_ && edge.rejection == Rejection::kNone) {
+    if (comparable) compare(node, T_local_anchor.theta, T_anchor_node_odometry, doubt, edge);
     const bool telling = doubt.isZero(0.0) && !node.degenerate && node.inlier_ratio >= LocalSlamTuning::kTellingInliers;
     if (telling) odometry_model_.learn(T_anchor_node_odometry, T_odometry_match);
   }
-  return link;
+  return edge;
 }
 
 void IncrementalGraphBuilder::correct(const Pose2& T_local_sensor) {
@@ -133,12 +133,12 @@ Eigen::Matrix3d IncrementalGraphBuilder::odometry_covariance(const Pose2& T_befo
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& node, double heading,
                                                           const Eigen::Matrix3d& others, double distance) const {
-  const double scale = link_.scanmatch_cov_scale;
+  const double scale = edge_parameters_.scanmatch_cov_scale;
   Eigen::Matrix3d covariance;
   if (motion_model_) {
     // What the match does not see (a corridor's axis) is known from odometry: the information of both is added.
     covariance = (match_information(node, heading) + others.inverse()).inverse();
-    const double heading_error = link_.heading_error_per_meter * distance;
+    const double heading_error = edge_parameters_.heading_error_per_meter * distance;
     const double turn = LocalSlamTuning::kSurfaceError / std::max(node.extent, LocalSlamTuning::kMinExtent);
     covariance(2, 2) += heading_error * heading_error + turn * turn;
   } else {
@@ -153,24 +153,24 @@ Eigen::Matrix3d IncrementalGraphBuilder::match_covariance(const TrackedScan& nod
 // The match is that of a score with odometry as its prior: it differs from odometry by less than odometry errs, and not
 // at all along what it does not see. If it does not, another guess than odometry's was followed (frsm::Tracker).
 void IncrementalGraphBuilder::compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry,
-                                      const Eigen::Matrix3d& doubt, MatchLink& link) const {
+                                      const Eigen::Matrix3d& doubt, MatchedEdge& edge) const {
   const Pose2& driven = T_anchor_node_odometry;
-  const Eigen::Vector3d difference(link.T_anchor_node.x - driven.x, link.T_anchor_node.y - driven.y,
-                                   wrap_angle(link.T_anchor_node.theta - driven.theta));
+  const Eigen::Vector3d difference(edge.T_anchor_node.x - driven.x, edge.T_anchor_node.y - driven.y,
+                                   wrap_angle(edge.T_anchor_node.theta - driven.theta));
   // A slip is none of what is learned.
   const Eigen::Matrix3d odometry = odometry_model_.model().covariance(driven) + doubt;
-  link.contradicts_odometry = difference.dot(odometry.inverse() * difference) > LocalSlamTuning::kContradiction;
+  edge.contradicts_odometry = difference.dot(odometry.inverse() * difference) > LocalSlamTuning::kContradiction;
   const Eigen::Matrix3d match = match_information(node, heading);
   const Eigen::Matrix3d doubted =
       LocalSlamTuning::kContradictedSigma * LocalSlamTuning::kContradictedSigma * Eigen::Matrix3d::Identity() +
       odometry;
   const Eigen::Vector3d towards_match = (match + doubted.inverse()).inverse() * match * difference;
-  link.T_anchor_node_weighed = {driven.x + towards_match.x(), driven.y + towards_match.y(),
+  edge.T_anchor_node_weighed = {driven.x + towards_match.x(), driven.y + towards_match.y(),
                                 wrap_angle(driven.theta + towards_match.z())};
 }
 
 Eigen::Matrix3d IncrementalGraphBuilder::match_information(const TrackedScan& node, double heading) const {
-  const double scale = link_.scanmatch_cov_scale;
+  const double scale = edge_parameters_.scanmatch_cov_scale;
   return rotate_covariance(node.information, -heading) / (scale * scale);
 }
 

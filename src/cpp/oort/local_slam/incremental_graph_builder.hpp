@@ -15,7 +15,7 @@
 namespace oort {
 
 /// What the scan matcher says of a node, seen from the last node of its segment whose match was accepted.
-struct MatchLink {
+struct MatchedEdge {
   Pose2 T_anchor_node;
   Eigen::Matrix3d covariance;              ///< along the axes of the anchor
   Rejection rejection = Rejection::kNone;  ///< why it is not accepted
@@ -27,7 +27,7 @@ struct MatchLink {
 };
 
 /// What the chosen matcher's section says of edges.
-struct LinkParameters {
+struct EdgeParameters {
   double scanmatch_cov_scale = 1.0;          ///< factors on standard deviations: of matches,
   double inflate_scanmatch_cov_scale = 1.0;  ///< of the first edge after a pause,
   double resume_scanmatch_cov_scale = 1.0;   ///< and of a session's first
@@ -37,7 +37,7 @@ struct LinkParameters {
   bool odometry_is_prior = false;
 };
 
-LinkParameters link_parameters(const IncrementalGraphBuilderParameters& parameters);
+EdgeParameters edge_parameters(const IncrementalGraphBuilderParameters& parameters);
 
 /// Follows the sensor from scan to scan and links node to node: by the match where it may be trusted, else by odometry
 /// (docs/architecture.md, the ten steps of a scan).
@@ -61,11 +61,11 @@ class IncrementalGraphBuilder {
 
   /// Judges the match of the scan just tracked, which becomes a node, against the motion by odometry since the anchor,
   /// and learns from it how good the odometry is.
-  /// The edge's covariance is that of the match and of odometry together; `odometry_is_linked`: of the match alone, as
+  /// The edge's covariance is that of the match and of odometry together; `odometry_has_edges`: of the match alone, as
   /// edges by odometry lead from the anchor to the node already and would count twice.
   /// `doubt`: covariance of what odometry is doubted for over the motion; nothing is learned from it then.
-  MatchLink link(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node,
-                 bool odometry_is_linked, const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
+  MatchedEdge make_edge(const Pose2& T_local_anchor, const Pose2& T_anchor_node_odometry, const TrackedScan& node,
+                        bool odometry_has_edges, const Eigen::Matrix3d& doubt = Eigen::Matrix3d::Zero());
 
   /// Overrules the matcher: the scan just tracked is at this pose of the local frame.
   void correct(const Pose2& T_local_sensor);
@@ -87,13 +87,13 @@ class IncrementalGraphBuilder {
   Eigen::Matrix3d match_covariance(const TrackedScan& node, double heading, const Eigen::Matrix3d& others,
                                    double distance) const;
   void compare(const TrackedScan& node, double heading, const Pose2& T_anchor_node_odometry,
-               const Eigen::Matrix3d& doubt, MatchLink& link) const;
+               const Eigen::Matrix3d& doubt, MatchedEdge& edge) const;
   Eigen::Matrix3d match_information(const TrackedScan& node, double heading) const;
 
   IncrementalGraphBuilderParameters parameters_;
   bool motion_model_;  // odometry's covariance grows with the motion, else it is constant
   LearnedOdometry odometry_model_;
-  LinkParameters link_;
+  EdgeParameters edge_parameters_;
   std::unique_ptr<ScanTracker> tracker_;
 };
 

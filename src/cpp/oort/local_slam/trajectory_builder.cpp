@@ -159,7 +159,7 @@ void TrajectoryBuilder::restart_if_rejected(const LocalScan& scan, bool matched)
 }
 
 TrajectoryNode TrajectoryBuilder::begin_segment(LocalScan& scan) {
-  const LinkParameters p = link_parameters(parameters_.incremental_graph_builder);
+  const EdgeParameters p = edge_parameters(parameters_.incremental_graph_builder);
   TrajectoryNode node;
   node.addition.begins_segment = true;
   node.addition.result.target = next_id_;
@@ -181,8 +181,8 @@ TrajectoryNode TrajectoryBuilder::extend(LocalScan& scan) {
   const Pose2 T_newest_node = between(newest_.T_odom_sensor, scan.T_odom_sensor);
   // What is matched after a gap says where the node is from before the gap, not from the nodes within.
   const bool after_gap = anchor_.id != newest_.id;
-  MatchLink match = matcher_.link(anchor_.T_local_sensor, between(anchor_.T_odom_sensor, scan.T_odom_sensor),
-                                  scan.tracked, after_gap && matcher_.knows_odometry(), doubt_since_anchor_);
+  MatchedEdge match = matcher_.make_edge(anchor_.T_local_sensor, between(anchor_.T_odom_sensor, scan.T_odom_sensor),
+                                         scan.tracked, after_gap && matcher_.knows_odometry(), doubt_since_anchor_);
   const bool is_fresh = local_map_ != LocalMap::kKnown;
   if (match.contradicts_odometry && !is_fresh) return contradict(scan, T_newest_node, match);
   if (is_fresh) match.rejection = Rejection::kRestarted;  // the anchor is not on the map that the scan was matched with
@@ -203,7 +203,7 @@ TrajectoryNode TrajectoryBuilder::extend(LocalScan& scan) {
     node.addition.from = anchor_.id;
     node.addition.T_from_node = match.T_anchor_node;
   } else {
-    ++counts_.odometry_links;
+    ++counts_.odometry_edges;
     ++counts_.match_rejections[match.rejection];
     scan.missed = true;
     node.addition.from = newest_.id;
@@ -226,7 +226,7 @@ TrajectoryNode TrajectoryBuilder::extend(LocalScan& scan) {
 
 // Odometry slipped, or the robot was kidnapped, or the match is a chance one: which of them is not known. A segment
 // begins with the scan, whose edge is as wide as what they say is apart, so that closures decide where it belongs.
-TrajectoryNode TrajectoryBuilder::contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchLink& match) {
+TrajectoryNode TrajectoryBuilder::contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchedEdge& match) {
   const auto from_newest_node = [&](const Pose2& T_anchor_node) {
     return from_newest(anchor_.T_local_sensor * T_anchor_node);
   };

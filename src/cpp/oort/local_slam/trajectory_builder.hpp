@@ -56,7 +56,7 @@ struct SessionStart {
 struct TrajectoryCounts {
   std::uint64_t scans_matched = 0;
   std::uint64_t nodes = 0;
-  std::uint64_t odometry_links = 0;  ///< nodes whose match was rejected
+  std::uint64_t odometry_edges = 0;  ///< nodes whose match was rejected
   RejectionCounts match_rejections;  ///< of nodes
   std::uint64_t contradictions = 0;  ///< segments begun as odometry and scans disagreed
 };
@@ -125,7 +125,7 @@ class TrajectoryBuilder {
   void restart_if_rejected(const LocalScan& scan, bool matched);
   TrajectoryNode begin_segment(LocalScan& scan);
   TrajectoryNode extend(LocalScan& scan);
-  TrajectoryNode contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchLink& match);
+  TrajectoryNode contradict(LocalScan& scan, const Pose2& T_newest_node, const MatchedEdge& match);
   Edge wide_edge(std::uint64_t target, const Pose2& T_target_node, const Eigen::Matrix3d& covariance,
                  const LocalScan& scan) const;
 

@@ -28,24 +28,24 @@ std::vector<int> variables_of(const Graph& graph, std::uint64_t first_free) {
 }
 
 template <typename AnyEdge>
-Link link_of(const AnyEdge& edge, double weight) {
-  Link link;
-  link.i = edge.i;
-  link.j = edge.j;
-  link.T_i_j = edge.constraint.T_i_j;
-  link.W = std::sqrt(weight) * whitening_matrix(edge.constraint.covariance, Whitening::kCorrect);
-  return link;
+SolverEdge prepare(const AnyEdge& edge, double weight) {
+  SolverEdge prepared;
+  prepared.i = edge.i;
+  prepared.j = edge.j;
+  prepared.T_i_j = edge.constraint.T_i_j;
+  prepared.W = std::sqrt(weight) * whitening_matrix(edge.constraint.covariance, Whitening::kCorrect);
+  return prepared;
 }
 
 /// The trajectory's edges, and the closures that are on.
-std::vector<Link> known_links(const Graph& graph) {
-  std::vector<Link> links;
-  for (const Edge& edge : graph.edges) links.push_back(link_of(edge, 1.0));
+std::vector<SolverEdge> known_edges(const Graph& graph) {
+  std::vector<SolverEdge> edges;
+  for (const Edge& edge : graph.edges) edges.push_back(prepare(edge, 1.0));
   for (const SwitchableEdge& edge : graph.switchable_edges) {
     if (edge.switch_value < RefinementTuning::kMinSwitch) continue;
-    links.push_back(link_of(edge, RefinementTuning::kClosureShare * edge.switch_value * edge.switch_value));
+    edges.push_back(prepare(edge, RefinementTuning::kClosureShare * edge.switch_value * edge.switch_value));
   }
-  return links;
+  return edges;
 }
 
 Rejection rejection_of(const ScanAlignment& alignment, double max_distance) {
@@ -58,8 +58,8 @@ Rejection rejection_of(const ScanAlignment& alignment, double max_distance) {
 }
 
 /// The edges between scans at some poses, and how well the scans agree there.
-struct ScanLinks {
-  std::vector<Link> links;
+struct ScanEdges {
+  std::vector<SolverEdge> edges;
   ClosureCounts counts;
   double weight = 0.0;            // of the pieces paired
   double squared_distance = 0.0;  // [m^2], times weight
@@ -67,9 +67,9 @@ struct ScanLinks {
   double misfit() const { return weight > 0.0 ? std::sqrt(squared_distance / weight) : 0.0; }
 };
 
-ScanLinks link_scans(const std::vector<std::vector<SurfacePiece>>& pieces, const std::vector<ViewPair>& pairs,
-                     const std::vector<Pose2>& poses, double max_distance, bool judge) {
-  ScanLinks result;
+ScanEdges edges_between(const std::vector<std::vector<SurfacePiece>>& pieces, const std::vector<ViewPair>& pairs,
+                        const std::vector<Pose2>& poses, double max_distance, bool judge) {
+  ScanEdges result;
   for (const auto& [i, j] : pairs) {
     ++result.counts.tried;
     const Pose2 T_i_j = between(poses[i], poses[j]);
@@ -81,23 +81,24 @@ ScanLinks link_scans(const std::vector<std::vector<SurfacePiece>>& pieces, const
     ++result.counts.accepted;
     result.weight += alignment.weight;
     result.squared_distance += alignment.squared_distance;
-    Link link;
-    link.i = i;
-    link.j = j;
+    SolverEdge edge;
+    edge.i = i;
+    edge.j = j;
     const Eigen::Vector3d& c = alignment.correction;
-    link.T_i_j = {T_i_j.x + c.x(), T_i_j.y + c.y(), wrap_angle(T_i_j.theta + c.z())};
+    edge.T_i_j = {T_i_j.x + c.x(), T_i_j.y + c.y(), wrap_angle(T_i_j.theta + c.z())};
     const double chi2 = (alignment.W * c).squaredNorm();
-    link.W = judge ? Eigen::Matrix3d(RefinementTuning::kRobustSquaredError /
+    edge.W = judge ? Eigen::Matrix3d(RefinementTuning::kRobustSquaredError /
                                      (RefinementTuning::kRobustSquaredError + chi2) * alignment.W)
                    : alignment.W;
-    result.links.push_back(link);
+    result.edges.push_back(edge);
   }
   return result;
 }
 
-std::vector<Pose2> solved(const std::vector<Pose2>& poses, const std::vector<int>& variables, std::vector<Link> links) {
-  const std::size_t count = links.size();
-  GraphSolver solver(poses, variables, std::move(links), RefinementTuning::kRobustSquaredError);
+std::vector<Pose2> solved(const std::vector<Pose2>& poses, const std::vector<int>& variables,
+                          std::vector<SolverEdge> edges) {
+  const std::size_t count = edges.size();
+  GraphSolver solver(poses, variables, std::move(edges), RefinementTuning::kRobustSquaredError);
   solver.use(std::vector<bool>(count, true));
   for (int k = 0;
        k < RefinementTuning::kSolverSteps && solver.step(RefinementTuning::kTolerance) == GraphSolver::Progress::kMoved;
@@ -116,15 +117,15 @@ RefinementCounts refine(Map& map, std::uint64_t first_free) {
   for (const Node& node : map.graph.nodes) poses.push_back(node.pose);
   const std::vector<ViewPair> pairs = view_pairs(poses, pieces);
   const std::vector<int> variables = variables_of(map.graph, first_free);
-  const std::vector<Link> known = known_links(map.graph);
+  const std::vector<SolverEdge> known = known_edges(map.graph);
 
-  ScanLinks scans = link_scans(pieces, pairs, poses, RefinementTuning::kInitialDistance, false);
-  const ScanLinks before = link_scans(pieces, pairs, poses, RefinementTuning::kDistance, false);
-  for (; counts.rounds < RefinementTuning::kRounds && !scans.links.empty(); ++counts.rounds) {
-    std::vector<Link> links = known;
-    links.insert(links.end(), scans.links.begin(), scans.links.end());
-    poses = solved(poses, variables, std::move(links));
-    scans = link_scans(pieces, pairs, poses, RefinementTuning::kDistance, true);
+  ScanEdges scans = edges_between(pieces, pairs, poses, RefinementTuning::kInitialDistance, false);
+  const ScanEdges before = edges_between(pieces, pairs, poses, RefinementTuning::kDistance, false);
+  for (; counts.rounds < RefinementTuning::kRounds && !scans.edges.empty(); ++counts.rounds) {
+    std::vector<SolverEdge> edges = known;
+    edges.insert(edges.end(), scans.edges.begin(), scans.edges.end());
+    poses = solved(poses, variables, std::move(edges));
+    scans = edges_between(pieces, pairs, poses, RefinementTuning::kDistance, true);
   }
   counts.links = scans.counts;
   counts.misfit_before = before.misfit();

@@ -65,7 +65,7 @@ ClosureCounts close_across(Map& map, std::uint64_t begin, const Joint& joint, co
     }
   }
   // Afterwards the joint is as wide as the first edge of a session: closures alone say where the segments lie.
-  const double scale = link_parameters(parameters.incremental_graph_builder).resume_scanmatch_cov_scale;
+  const double scale = edge_parameters(parameters.incremental_graph_builder).resume_scanmatch_cov_scale;
   map.graph.edges[link].constraint.covariance =
       LocalSlamTuning::kUnmatchedVariance * scale * scale * Eigen::Matrix3d::Identity();
   return counts;
