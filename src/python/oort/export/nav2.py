@@ -17,9 +17,10 @@ from oort.export.geojson import feature, write_geojson
 from oort.recording.types import Pose
 
 _DOCK = "simple_charging_dock"
+_FRAME = "map"
 
 
-def write_docks(path: Path, docks: Sequence[tuple[str, Pose]], frame: str = "map") -> None:
+def write_docks(path: Path, docks: Sequence[tuple[str, Pose]]) -> None:
     """Writes docks, names with T_map_dock, as nav2's ``dock_database`` (YAML).
 
     Raises InputError if there is none, OortError if the file cannot be written.
@@ -27,7 +28,7 @@ def write_docks(path: Path, docks: Sequence[tuple[str, Pose]], frame: str = "map
     if not docks:
         raise InputError("the map has no dock: name one with graph_loc/create in the namespace 'dock'")
     entries = {
-        name: {"type": _DOCK, "frame": frame, "pose": [round(value, 6) for value in pose]} for name, pose in docks
+        name: {"type": _DOCK, "frame": _FRAME, "pose": [round(value, 6) for value in pose]} for name, pose in docks
     }
     stream = io.StringIO()
     yaml = YAML()
@@ -36,13 +37,13 @@ def write_docks(path: Path, docks: Sequence[tuple[str, Pose]], frame: str = "map
     write_atomically(path, stream.getvalue().encode())
 
 
-def write_route(path: Path, nodes: NDArray[np.float64], edges: NDArray[np.int64], frame: str = "map") -> None:
+def write_route(path: Path, nodes: NDArray[np.float64], edges: NDArray[np.int64]) -> None:
     """Writes a route graph (GeoJSON): nodes (n, 2) x, y [m] and edges (m, 2), each to be driven both ways.
 
     Raises OortError if the file cannot be written.
     """
     features: list[dict[str, Any]] = [
-        feature({"id": k, "frame": frame}, "Point", [round(x, 4), round(y, 4)])
+        feature({"id": k, "frame": _FRAME}, "Point", [round(x, 4), round(y, 4)])
         for k, (x, y) in enumerate(nodes.tolist())
     ]
     both = np.concatenate([edges, edges[:, ::-1]]) if len(edges) else edges

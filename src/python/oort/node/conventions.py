@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What users of slam_toolbox know of a mapping node in ROS 2: their topics, and their services for what Oort does."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import MapMetaData
 
 from oort._core import save_map
-from oort.errors import OortError, StateError
+from oort.errors import StateError
 from oort.export.map_server import write_map_server
 from oort.live import Drawing, LiveSession
 from oort.live.paths import check_absolute, make_room
@@ -32,12 +31,12 @@ class MappingConventions:
         self._map_frame = map_frame
         self._meta_data = middleware.publisher("map_metadata", MapMetaData, Quality.LATCHED)
         self._pose = middleware.publisher("pose", PoseWithCovarianceStamped, Quality.STREAM)
-        self._offer("save_map", "SetString", lambda request: self._save_map(request.data))
-        self._offer("serialize_map", "SetString", lambda request: self._serialize(request.data))
-        self._offer("deserialize_map", "SetString", lambda request: live.call("map/load", [request.data]))
-        self._offer("pause_new_measurements", "Empty", lambda _: self._pause())
-        self._offer("reset", "Empty", lambda _: self._reset())
-        self._offer("dynamic_map", "GetOccupancyGrid", lambda _: self._map())
+        middleware.offer("save_map", "SetString", lambda request: self._save_map(request.data))
+        middleware.offer("serialize_map", "SetString", lambda request: self._serialize(request.data))
+        middleware.offer("deserialize_map", "SetString", lambda request: live.call("map/load", [request.data]))
+        middleware.offer("pause_new_measurements", "Empty", lambda _: self._pause())
+        middleware.offer("reset", "Empty", lambda _: self._reset())
+        middleware.offer("dynamic_map", "GetOccupancyGrid", lambda _: self._map())
 
     def scan_taken(self) -> None:
         """Tells where the base was at the scan that was mapped just now."""
@@ -53,17 +52,6 @@ class MappingConventions:
         stamp = self._middleware.stamp(self._middleware.now())
         message = place_grid(self._middleware.grid(drawing.grid), drawing.grid, self._map_frame, stamp)
         self._meta_data.publish(message.info)
-
-    def _offer(self, name: str, kind: str, handle: Callable[[Any], dict[str, Any] | None]) -> None:
-        def answer(request: Any) -> dict[str, Any] | None:
-            try:
-                return handle(request)
-            except OortError as error:
-                if str(error).startswith(name):
-                    raise
-                raise OortError(f"{name}: {error}") from error
-
-        self._middleware.serve(f"~{name}", kind, answer)
 
     def _save_map(self, path: str) -> None:
         """The map for map_server, as PATH.pgm and PATH.yaml."""

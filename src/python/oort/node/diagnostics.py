@@ -9,6 +9,8 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from oort.live.figures import Figures
+from oort.live.inbox import Inbox
 from oort.live.window import Spread
 
 OK, WARN, ERROR = range(3)
@@ -108,6 +110,24 @@ class Health(ABC):
         """Of scans that wait for their transform."""
         yield "scans waiting", str(self.waiting_scans)
         yield "waiting for", (self.waiting_for if self.waiting_scans else "") or "-"
+
+
+def health_of_input(figures: Figures, inbox: Inbox) -> dict[str, Any]:
+    """What Health says of the scans that came and wait, by field."""
+    waiting, seconds_waiting = inbox.waiting()
+    return {
+        "queue_size": len(inbox),
+        "scans_received": figures.scans_arrived,
+        "scan_rate_hz": figures.scan_rate,
+        "seconds_without_scan": figures.seconds_without_scan,
+        "scans_processed": figures.scans_mapped,
+        "drops": dict(figures.drops.counts),
+        "drops_of_late": figures.drops.of_late(),
+        "ms_per_scan": figures.milliseconds.spread,
+        "delay_ms": figures.delays.spread,
+        "waiting_scans": waiting,
+        "seconds_waiting": seconds_waiting,
+    }
 
 
 def diagnostic_array(health: Health, node_name: str, stamp: Any) -> DiagnosticArray:

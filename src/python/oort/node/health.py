@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from oort.live import LiveSession
-from oort.node.diagnostics import ERROR, WARN, Health, Problem, number
+from oort.node.diagnostics import ERROR, WARN, Health, Problem, health_of_input, number
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -81,21 +81,12 @@ def look_over(live: LiveSession, scan_topic: str, waiting_for: str, imu_trouble:
     """How mapping goes now; ``waiting_for`` says which transform the waiting scans lack, ``imu_trouble`` as Health."""
     snapshot = live.snapshot
     figures, saver = live.figures, live.keeper.saver
-    waiting, seconds_waiting = live.inbox.waiting()
     result = figures.last_result
     return MappingHealth(
+        **health_of_input(figures, live.inbox),
         state=snapshot.state.value,
         path=snapshot.path,
-        queue_size=len(live.inbox),
         scan_topic=scan_topic,
-        scans_received=figures.scans_arrived,
-        scan_rate_hz=figures.scan_rate,
-        seconds_without_scan=figures.seconds_without_scan,
-        scans_processed=figures.scans_mapped,
-        drops=dict(figures.drops.counts),
-        drops_of_late=figures.drops.of_late(),
-        ms_per_scan=figures.milliseconds.spread,
-        delay_ms=figures.delays.spread,
         tracking=figures.tracking(snapshot.state).value,
         inlier_ratio=None if result is None else result.inlier_ratio,
         nodes=snapshot.num_nodes,
@@ -103,8 +94,6 @@ def look_over(live: LiveSession, scan_topic: str, waiting_for: str, imu_trouble:
         last_save=saver.last_saved,
         seconds_since_save=saver.seconds_since_save,
         save_error=saver.error,
-        waiting_scans=waiting,
-        seconds_waiting=seconds_waiting,
         waiting_for=waiting_for,
         imu_trouble=imu_trouble,
         troubles=[str(trouble) for trouble in live.troubles],

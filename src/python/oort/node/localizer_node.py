@@ -22,7 +22,7 @@ from oort.live.figures import Figures
 from oort.live.inbox import UNUSABLE, Answer, CallItem, Inbox, ScanItem
 from oort.live.snapshot import odom_pose_of
 from oort.localization import Localizer, ReferenceMap, start_covariance, start_pose
-from oort.node.diagnostics import diagnostic_array
+from oort.node.diagnostics import diagnostic_array, health_of_input
 from oort.node.laser import Laser
 from oort.node.last_pose import LastPose
 from oort.node.localizer_health import LocalizerHealth, Sighting
@@ -307,21 +307,9 @@ class LocalizerNode:
             self._middleware.send_transform(stamped)
 
     def _tell_health(self) -> None:
-        waiting, since = self._inbox.waiting()
-        figures = self._figures
         health = LocalizerHealth(
-            queue_size=len(self._inbox),
+            **health_of_input(self._figures, self._inbox),
             scan_topic=self._scans.topic,
-            scans_received=figures.scans_arrived,
-            scan_rate_hz=figures.scan_rate,
-            seconds_without_scan=figures.seconds_without_scan,
-            scans_processed=figures.scans_mapped,
-            drops=dict(figures.drops.counts),
-            drops_of_late=figures.drops.of_late(),
-            ms_per_scan=figures.milliseconds.spread,
-            delay_ms=figures.delays.spread,
-            waiting_scans=waiting,
-            seconds_waiting=since,
             waiting_for=self._transforms.missing(self._sensor_frame),
             imu_trouble=self._transforms.imu_trouble(),
             map_path=self._base,

@@ -5,7 +5,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from oort.errors import InputError, OortError
+from oort.errors import InputError
 from oort.history import describe, versions
 from oort.live import LiveSession
 from oort.node.messages import place_grid, pose_stamped
@@ -22,40 +22,29 @@ class Services:
         self._live = live
         self._middleware = middleware
         self._map_frame = map_frame
-        self._offer("map/republish_maps", "Empty", lambda _: live.redraw())
-        self._offer("map/start", "SetString", self._start)
-        self._offer("map/load", "SetString", self._load)
-        self._offer("map/resume", "MapResume", self._resume)
-        self._offer("map/resume_here", "SetString", self._resume_here)
-        self._offer("map/state", "GetString", lambda _: {"data": live.snapshot.state.value})
-        self._offer("map/name", "GetString", lambda _: {"data": live.snapshot.path})
-        self._offer("map/has_map", "GetBool", lambda _: {"data": live.has_map})
-        self._offer("map/num_nodes", "GetUInt", lambda _: {"data": live.snapshot.num_nodes})
-        self._offer("map/map", "GetMap", self._map)
-        self._offer("map/history", "GetStrings", self._history)
-        self._offer("map/restore", "SetString", self._restore)
-        self._offer("graph_loc/create", "LocCreate", self._create)
-        self._offer("graph_loc/create_points", "LocCreatePoints", self._create_points)
-        self._offer("graph_loc/is_ready", "GetBool", lambda _: {"data": live.places.is_ready})
-        self._offer("graph_loc/list", "LocNamespace", self._list)
-        self._offer("graph_loc/list_namespaces", "GetStrings", self._list_namespaces)
-        self._offer("graph_loc/delete", "LocDelete", self._delete)
-        self._offer("graph_loc/locate", "LocLocate", self._locate)
-        self._offer("graph_loc/clear", "LocNamespace", self._clear)
+        middleware.offer("map/republish_maps", "Empty", lambda _: live.redraw())
+        middleware.offer("map/start", "SetString", self._start)
+        middleware.offer("map/load", "SetString", self._load)
+        middleware.offer("map/resume", "MapResume", self._resume)
+        middleware.offer("map/resume_here", "SetString", self._resume_here)
+        middleware.offer("map/state", "GetString", lambda _: {"data": live.snapshot.state.value})
+        middleware.offer("map/name", "GetString", lambda _: {"data": live.snapshot.path})
+        middleware.offer("map/has_map", "GetBool", lambda _: {"data": live.has_map})
+        middleware.offer("map/num_nodes", "GetUInt", lambda _: {"data": live.snapshot.num_nodes})
+        middleware.offer("map/map", "GetMap", self._map)
+        middleware.offer("map/history", "GetStrings", self._history)
+        middleware.offer("map/restore", "SetString", self._restore)
+        middleware.offer("graph_loc/create", "LocCreate", self._create)
+        middleware.offer("graph_loc/create_points", "LocCreatePoints", self._create_points)
+        middleware.offer("graph_loc/is_ready", "GetBool", lambda _: {"data": live.places.is_ready})
+        middleware.offer("graph_loc/list", "LocNamespace", self._list)
+        middleware.offer("graph_loc/list_namespaces", "GetStrings", self._list_namespaces)
+        middleware.offer("graph_loc/delete", "LocDelete", self._delete)
+        middleware.offer("graph_loc/locate", "LocLocate", self._locate)
+        middleware.offer("graph_loc/clear", "LocNamespace", self._clear)
         # map/stop comes last: who waits for it finds all the others.
         for name in ("notify_docked", "pause", "resume_from_paused", "accept", "reject", "clear", "stop"):
-            self._offer(f"map/{name}", "Empty", self._empty_call(f"map/{name}"))
-
-    def _offer(self, name: str, kind: str, handle: _Handle) -> None:
-        def answer(request: Any) -> dict[str, Any] | None:
-            try:
-                return handle(request)
-            except OortError as error:
-                if str(error).startswith(name):
-                    raise
-                raise OortError(f"{name}: {error}") from error
-
-        self._middleware.serve(f"~{name}", kind, answer)
+            middleware.offer(f"map/{name}", "Empty", self._empty_call(f"map/{name}"))
 
     def _empty_call(self, name: str) -> _Handle:
         def handle(_: Any) -> None:

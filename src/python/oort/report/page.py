@@ -18,16 +18,16 @@ _DATA = '<script type="application/json" id="oort-data">'
 _END = "</script>"
 
 
-def make_page(template: str, scripts: Sequence[str], title: str, data: Mapping[str, Any]) -> bytes:
-    """A page from a template of ``web/``, with styles, libraries, scripts and data within."""
-    page = asset(template)
+def make_page(body: str, scripts: Sequence[str], title: str, data: Mapping[str, Any]) -> bytes:
+    """A page with a body of ``web/``, and styles, libraries, scripts and data within."""
     parts = {
+        "body": asset(body),
         "title": html.escape(title),
         "styles": "\n".join(asset(name) for name in _STYLES),
         "data": f"{_DATA}{_json(data)}{_END}",
         "scripts": "\n".join(f"<script>\n{asset(name)}\n{_END}" for name in (*_LIBRARIES, *scripts)),
     }
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], page).encode()
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], asset("page.html")).encode()
 
 
 def make_report_page(title: str, data: Mapping[str, Any]) -> bytes:

@@ -12,6 +12,7 @@ from enum import Enum, auto
 from typing import Any, Protocol
 
 from oort._core import OccupancyGrid
+from oort.errors import OortError
 
 Fields = Mapping[str, Any]
 """Of a service's response, by name; those that the middleware's definition lacks are left out."""
@@ -141,6 +142,19 @@ class Middleware(ABC):
     @abstractmethod
     def send_transform(self, transform: Any) -> None:
         """To tf."""
+
+    def offer(self, name: str, kind: str, handle: Callable[[Any], Fields | None]) -> None:
+        """Offers ~name as serve() does; what fails, fails with a sentence that names the service."""
+
+        def answer(request: Any) -> Fields | None:
+            try:
+                return handle(request)
+            except OortError as error:
+                if str(error).startswith(name):
+                    raise
+                raise OortError(f"{name}: {error}") from error
+
+        self.serve(f"~{name}", kind, answer)
 
     @abstractmethod
     def serve(self, name: str, kind: str, handle: Callable[[Any], Fields | None]) -> None:
