@@ -13,6 +13,7 @@
 #include "bindings.hpp"
 #include "oort/geometry/errors.hpp"
 #include "oort/graph/landmarks.hpp"
+#include "oort/graph/tuning.hpp"
 #include "oort/map/map.hpp"
 
 namespace py = pybind11;
@@ -196,6 +197,8 @@ void bind_options(py::module_& m) {
 void bind_graph(py::module_& m) {
   bind_options(m);
   m.attr("SWITCH_ON") = kSwitchOn;
+  m.attr("AGREEMENT_CHI2") = GraphTuning::kAgreement;
+  m.attr("ODOMETRY_EDGE") = static_cast<int>(ConstraintType::kOdometry);
   m.def(
       "optimize_graph", &optimize_graph, py::arg("node_poses"), py::arg("i"), py::arg("j"), py::arg("measurements"),
       py::arg("covariances"), py::arg("switchable"), py::arg("options") = OptimizerOptions{},

@@ -713,4 +713,6 @@ def unknown_parameter(path: str) -> str:
     """The message for a path that is in no table, with the nearest path or section that is."""
 
 FORMAT_VERSION: int
+AGREEMENT_CHI2: float
+ODOMETRY_EDGE: int
 SWITCH_ON: float

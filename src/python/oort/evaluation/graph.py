@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from oort._core import SWITCH_ON, OptimizerOptions, OptimizerSummary, optimize_graph
+from oort._core import AGREEMENT_CHI2, SWITCH_ON, OptimizerOptions, OptimizerSummary, optimize_graph
 from oort.errors import InputError
 from oort.evaluation.trajectories import alignment
 from oort.export import PoseGraph, read_g2o
@@ -22,7 +22,6 @@ METHODS = {
     "plain": "least squares: all edges are believed",
 }
 _MAX_ITERATIONS = 200
-_AGREEMENT = 7.815  # chi^2 up to which a closure agrees: 95 % of three degrees of freedom, as the optimiser decides
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +57,7 @@ def solve_graph(graph: PoseGraph, method: str = "decide", scale: float = 2.0) ->
     )
     solved = replace(graph, poses=poses)
     chi2 = chi_squared(solved)
-    agrees = chi2 <= _AGREEMENT if method == "decide" else switches >= SWITCH_ON
+    agrees = chi2 <= AGREEMENT_CHI2 if method == "decide" else switches >= SWITCH_ON
     return Solution(solved, agrees | ~closures, closures, switches, chi2, summary)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from oort._core import SWITCH_ON, Map
+from oort._core import ODOMETRY_EDGE, SWITCH_ON, Map
 from oort.evaluation.graph import squared_errors
 from oort.export.chart import Panel
 
@@ -16,7 +16,6 @@ INLIER_EDGES = tuple(k / 20 for k in range(20))
 """Lower limits of the bins of inlier ratios. The last bin of a histogram is all from its limit on."""
 CHI2_EDGES = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """Likewise of chi^2: 7.8 is the 95 % limit of three degrees of freedom."""
-_ODOMETRY = 1  # the type of an edge
 _TITLES = {
     ("inlier_ratio", "scans"): "inlier ratio of tracked scans",
     ("inlier_ratio", "closures"): "inlier ratio of closures",
@@ -39,7 +38,7 @@ def make_histograms(
     """
     chain, closures = map_.edges, map_.switchable_edges
     chain_chi2, closure_chi2 = _chi_squared(map_, chain), _chi_squared(map_, closures)
-    odometry, off = chain["type"] == _ODOMETRY, closures["switch"] < SWITCH_ON
+    odometry, off = chain["type"] == ODOMETRY_EDGE, closures["switch"] < SWITCH_ON
     return {
         "inlier_ratio": {
             "edges": list(INLIER_EDGES),

@@ -13,6 +13,7 @@ from oort.session import State
 
 _QUIET = 10.0  # [s] between two words on one reason
 _OF_LATE = 5.0  # [s]
+_SILENCE = 1.0  # [s] without a scan: none are arriving
 _NEVER = float("-inf")
 
 
@@ -100,6 +101,11 @@ class Figures:
     def seconds_without_scan(self) -> float:
         """Since the last scan arrived [s]; inf if none did."""
         return time.monotonic() - self._last_arrival
+
+    @property
+    def scans_arrive(self) -> bool:
+        """Whether one did of late."""
+        return self.seconds_without_scan <= _SILENCE
 
     def tracking(self, state: State) -> Tracking:
         """How well the robot's place is known."""

@@ -17,7 +17,6 @@ from oort.naming import Naming, service
 from oort.session import State
 
 _CREATE = "graph_loc/create"
-_SILENCE = 1.0  # [s] without a scan: none are arriving
 _PATIENCE = 1.0  # [s] that a place may take if nothing else is in the queue
 
 
@@ -98,7 +97,7 @@ class Places:
         create = self._naming(_CREATE)
         snapshot = self._snapshot()
         if snapshot.state is State.MAPPING:
-            if snapshot.odom_pose is None and self._figures.seconds_without_scan > _SILENCE:
+            if snapshot.odom_pose is None and not self._figures.scans_arrive:
                 raise StateError(
                     f"{create}: no scan has been mapped and none is arriving, so the robot's place is not known; "
                     "check the scan topic"

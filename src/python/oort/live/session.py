@@ -37,7 +37,6 @@ _SHOW_MAP = (_LOAD, _RESUME, _REJECT, _STOP, _REDRAW)
 _BACKWARDS = 1.0  # [s]; a scan that is older than the last one by more says that the clock was set back
 _LOOK_EVERY = 100  # scans, between looks for what is wrong with the setup
 _IDLE = 0.2  # [s] between looks at the clock when nothing comes
-_SILENCE = 1.0  # [s] without a scan: none are arriving
 _CLOSING = 5.0  # [s] for what is ready in the queue when the session is closed
 
 _Result = TypeVar("_Result")
@@ -135,7 +134,7 @@ class LiveSession:
     def _await(self, docking: "Future[bool]") -> bool | None:
         """What came of looking for the dock: scans go on meanwhile, and without them so does nothing."""
         while not wait([docking], _IDLE).done:
-            silent = len(self.inbox) == 0 and self.figures.seconds_without_scan > _SILENCE
+            silent = len(self.inbox) == 0 and not self.figures.scans_arrive
             if silent or self._closing or self._snapshot.state is not State.MAPPING:
                 return docking.result() if docking.done() else None
         return docking.result()

@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from oort._core import SWITCH_ON, Map
+from oort._core import ODOMETRY_EDGE, SWITCH_ON, Map
 from oort.node.messages import rotation
 from oort.recording import Pose
-
-_ODOMETRY = 1  # the type of an edge whose scan match was rejected
 
 # Each kind lies a little higher than the one before it, so that what overlaps does not flicker.
 _CHAIN = ("chain", (0.25, 0.45, 0.9, 1.0), 0.01)
@@ -42,7 +40,7 @@ def graph_markers(map_: Map, places: Sequence[tuple[str, str, Pose]], frame: str
     """
     points = [_point(x, y) for x, y, _ in map_.node_poses.tolist()]  # shared by all markers: making them costs most
     edges, closures = map_.edges, map_.switchable_edges
-    by_odometry, believed = edges["type"] == _ODOMETRY, closures["switch"] >= SWITCH_ON
+    by_odometry, believed = edges["type"] == ODOMETRY_EDGE, closures["switch"] >= SWITCH_ON
     markers = [
         _lines(_CHAIN, points, edges["i"][~by_odometry], edges["j"][~by_odometry]),
         _lines(_BY_ODOMETRY, points, edges["i"][by_odometry], edges["j"][by_odometry]),
