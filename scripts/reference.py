@@ -14,11 +14,30 @@ import pkgutil
 import sys
 import types
 from pathlib import Path
+from typing import Generic, TypeVar
 
+import numpy.typing
 import pdoc
 
-import oort
-from oort import _core
+T = TypeVar("T")
+
+
+class ArrayLike:
+    """As it is read. What numpy has in its place is lines of its internals."""
+
+    __module__ = "builtins"
+
+
+class NDArray(Generic[T]):
+    """Likewise."""
+
+    __module__ = "builtins"
+
+
+vars(numpy.typing).update(ArrayLike=ArrayLike, NDArray=NDArray)  # before oort takes them
+
+import oort  # noqa: E402
+from oort import _core  # noqa: E402
 
 STUB = Path(__file__).resolve().parents[1] / "src/python/oort/_core.pyi"
 PROGRAMS = {"cli", "node"}

@@ -712,7 +712,7 @@ def save_metadata(path: str, map: Map) -> Saved:
 def unknown_parameter(path: str) -> str:
     """The message for a path that is in no table, with the nearest path or section that is."""
 
-FORMAT_VERSION: int
 AGREEMENT_CHI2: float
+FORMAT_VERSION: int
 ODOMETRY_EDGE: int
 SWITCH_ON: float
