@@ -47,9 +47,9 @@ void declare_acceptance(const Section& v, CartographerMatcherParameters& p) {
     "Factor on the standard deviations of the match's covariance.")
       .documented(10.0, "As in frsm_matcher.");
   v(p.inflate_scanmatch_cov_scale, "inflate_scanmatch_cov_scale", {40.0, "", {0.001, 1e6}},
-    "Takes the place of scanmatch_cov_scale for the first link after resume_from_paused.");
+    "Takes the place of scanmatch_cov_scale for the first edge after resume_from_paused.");
   v(p.resume_scanmatch_cov_scale, "resume_scanmatch_cov_scale", {50.0, "", {0.001, 1e6}},
-    "Takes the place of scanmatch_cov_scale for the first link of a new session on an old map.");
+    "Takes the place of scanmatch_cov_scale for the first edge of a new session on an old map.");
   v(p.sm_dist_accept_threshold, "sm_dist_accept_threshold", {1.5, "m", {0.0, 100.0}},
     "Largest distance of match and odometry that is accepted.")
       .documented(0.05, kGates);

@@ -117,9 +117,9 @@ void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {
                   "with 1 and information_scale 2. Intel 0.013 m instead of 0.0135 m, and 0.018 m instead of 0.089 m "
                   "with readings cut at 3 m.");
   v(p.inflate_scanmatch_cov_scale, "inflate_scanmatch_cov_scale", {40.0, "", {0.001, 1e6}},
-    "Takes the place of scanmatch_cov_scale for the first link after resume_from_paused.");
+    "Takes the place of scanmatch_cov_scale for the first edge after resume_from_paused.");
   v(p.resume_scanmatch_cov_scale, "resume_scanmatch_cov_scale", {50.0, "", {0.001, 1e6}},
-    "Takes the place of scanmatch_cov_scale for the first link of a new session on an old map.");
+    "Takes the place of scanmatch_cov_scale for the first edge of a new session on an old map.");
   v(p.sm_dist_accept_threshold, "sm_dist_accept_threshold", {0.06, "m", {0.0, 100.0}}, "Documented as unused.")
       .no_effect();
   v(p.sm_angle_accept_threshold, "sm_angle_accept_threshold", {0.07, "rad", {0.0, 3.15}}, "Documented as unused.")
@@ -131,10 +131,10 @@ void declare_frsm_matcher(const Section& v, FrsmMatcherParameters& p) {
 }  // namespace
 
 void declare_incremental(const Section& v, IncrementalGraphBuilderParameters& p) {
-  v(p.odom_cov_xx, "odom_cov_xx", {0.02, "m^2", {1e-9, 1e4}}, "Variance along x of a link from odometry alone.");
-  v(p.odom_cov_yy, "odom_cov_yy", {0.02, "m^2", {1e-9, 1e4}}, "Variance along y of a link from odometry alone.");
+  v(p.odom_cov_xx, "odom_cov_xx", {0.02, "m^2", {1e-9, 1e4}}, "Variance along x of an edge from odometry alone.");
+  v(p.odom_cov_yy, "odom_cov_yy", {0.02, "m^2", {1e-9, 1e4}}, "Variance along y of an edge from odometry alone.");
   v(p.odom_cov_tt, "odom_cov_tt", {0.01, "rad^2", {1e-9, 1e4}},
-    "Variance of the heading of a link from odometry alone.");
+    "Variance of the heading of an edge from odometry alone.");
   v(p.match_every_scan, "match_every_scan", true, "Whether scans between two nodes are matched too.")
       .own(false,
            "Scans between nodes are then located by the matcher instead of by odometry: fr079 0.030 m instead of 2.30 "
@@ -142,8 +142,8 @@ void declare_incremental(const Section& v, IncrementalGraphBuilderParameters& p)
            "0.0127 m instead of 0.0217 m.");
   v(p.odometry_model, "odometry_model", {"motion", {"motion", "constant"}},
     "How uncertain odometry is: motion, growing as odometry_noise says; constant, std_mot_model for the matcher and "
-    "odom_cov_* for links.")
-      .own("constant", "A link's weight follows from how far the robot moved: Intel 0.0127 m instead of 0.0130 m.");
+    "odom_cov_* for edges.")
+      .own("constant", "An edge's weight follows from how far the robot moved: Intel 0.0127 m instead of 0.0130 m.");
   declare_odometry_noise(v.section("odometry_noise"), p.odometry_noise);
   v(p.scanmatcher, "scanmatcher", {"frsm_matcher", {"frsm_matcher", "cartographer_matcher"}},
     "The matcher that links consecutive nodes.");

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""How well scans and closures matched, and how far a solved map's links are off: the histograms of report.json."""
+"""How well scans and closures matched, and how far a solved map's edges are off: the histograms of report.json."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,8 +20,8 @@ _TITLES = {
     ("inlier_ratio", "scans"): "inlier ratio of tracked scans",
     ("inlier_ratio", "closures"): "inlier ratio of closures",
     ("inlier_ratio", "rejected"): "inlier ratio of rejected closures",
-    ("chi2", "laser"): "chi2 of matched links",
-    ("chi2", "odometry"): "chi2 of odometry links",
+    ("chi2", "laser"): "chi2 of matched edges",
+    ("chi2", "odometry"): "chi2 of odometry edges",
     ("chi2", "closures"): "chi2 of closures that are on",
     ("chi2", "switched_off"): "chi2 of closures that are off",
 }
@@ -33,7 +33,7 @@ def make_histograms(
     """Counts by inlier ratio and by chi^2 (squared Mahalanobis distance), as report.json has them.
 
     `scans` are the inlier ratios of the scans that were matched, `rejected` those of closures that were rejected
-    though there was a match. The links' chi^2 are at the map's poses; a switch
+    though there was a match. The edges' chi^2 are at the map's poses; a switch
     takes nothing from it.
     """
     chain, closures = map_.edges, map_.switchable_edges
