@@ -54,6 +54,8 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         "batch",
         "compare",
         "view",
+        "rooms",
+        "areas",
         "export",
         "parameters table",
     ],

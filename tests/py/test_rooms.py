@@ -26,6 +26,7 @@ ORDER = [
     "diagnosis",
     "naming",
     "locations",
+    "areas",
     "session",
     "localization",
     "simulate",

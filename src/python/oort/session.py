@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from oort._core import Map, Parameters, Saved, ScanResult, normalise_map_path, save_map, save_metadata
+from oort.areas import Area
 from oort.diagnosis import Observer, Trouble, diagnose, loose_parts
 from oort.errors import StateError
 from oort.locations import Locations, Pose
@@ -320,6 +321,12 @@ class Session:
             _check_text(namespace=name_space, id=id)
         self._locations.create_points(name_spaces, points, ids)
         self._write(Saved.METADATA)
+
+    def create_area(self, area: Area) -> None:
+        """Keeps an area where the robot shall not go, in the place of one of its kind and name."""
+        self._locations.clear(area.name_space)
+        ids = [str(number) for number in range(len(area.points))]
+        self.create_points([area.name_space] * len(ids), area.points, ids)
 
     def delete_location(self, name_space: str, id: str) -> bool:
         """Forgets a place; whether it was there."""

@@ -3,13 +3,16 @@
 """A saved map in the formats of other programs, read back."""
 
 import json
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import readfile
 from ruamel.yaml import YAML
+from shapely.geometry import Polygon, shape
 
 from oort import Map, Parameters
 from oort.cli.export import main
@@ -22,6 +25,7 @@ from oort.simulate import Drive
 from oort.simulate.writers import write_carmen
 
 _NAME = "sofa & <b>"
+_SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.5), (0.0, 0.5)]
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +33,13 @@ def map_(drive: Drive, tmp_path_factory: pytest.TempPathFactory) -> Map:
     path = tmp_path_factory.mktemp("export") / "home.clf"
     write_carmen(drive, path)
     made = replay(open_recording(path)).map
-    made.locations = [("dock", "dock", 0, (0.1, 0.0, 0.5)), ("rooms", _NAME, 20, (0.0, 0.0, 0.0))]
+    made.locations = [
+        ("dock", "dock", 0, (0.1, 0.0, 0.5)),
+        ("places", _NAME, 20, (0.0, 0.0, 0.0)),
+        *((f"no_go_area/{_NAME}", str(k), 5, (x, y, 0.0)) for k, (x, y) in enumerate(_SQUARE)),
+        ("no_go_line/stairs", "0", 5, (0.0, 1.0, 0.0)),
+        ("no_go_line/stairs", "1", 5, (1.0, 1.0, 0.0)),
+    ]
     return made
 
 
@@ -74,7 +84,9 @@ def test_walls_of_the_dxf_lie_on_the_true_walls(base: Path, drive: Drive) -> Non
             for p, q in [(line.dxf.start, line.dxf.end)]
         ]
     )
-    assert _NAME in [text.dxf.text for text in space.query("TEXT")][1]
+    assert _NAME in [text.dxf.text for text in space.query("TEXT[layer=='PLACES']")][1]
+    square, line = (each for each in space.query("LWPOLYLINE[layer=='NO_GO']") if isinstance(each, LWPolyline))
+    assert (len(square), square.closed, len(line), line.closed) == (4, True, 2, False)
     long = lines[np.hypot(*(lines[:, 2:] - lines[:, :2]).T) > 1.0]
     assert len(long) > 5
     middles = long.reshape(-1, 2, 2).mean(axis=1)
@@ -88,7 +100,10 @@ def test_walls_of_the_dxf_lie_on_the_true_walls(base: Path, drive: Drive) -> Non
 def test_the_svg_is_xml_with_walls_and_places(base: Path) -> None:
     root = ElementTree.parse(_export(base, "svg", "home.svg")).getroot()
     names = [text.text for text in root.iter("{http://www.w3.org/2000/svg}text")]
-    assert names == ["dock/dock", f"rooms/{_NAME}"]
+    assert names[-2:] == ["dock/dock", f"places/{_NAME}"]
+    assert [name for name in names[:-2] if name and name.endswith(" m²")] == names[:-2]
+    titles = [title.text for title in root.iter("{http://www.w3.org/2000/svg}title")]
+    assert titles == [_NAME, "stairs"]
     assert len(list(root.iter("{http://www.w3.org/2000/svg}line"))) > 10
 
 
@@ -96,8 +111,31 @@ def test_geojson_has_walls_and_places(base: Path, map_: Map) -> None:
     features = json.loads(_export(base, "geojson", "home.geojson").read_text())["features"]
     places = {f["properties"]["name"]: f for f in features if f["properties"]["kind"] == "place"}
     assert places[_NAME]["geometry"]["coordinates"] == pytest.approx(
-        list(map_.locate("rooms", _NAME) or ())[:2], abs=1e-4
+        list(map_.locate("places", _NAME) or ())[:2], abs=1e-4
     )
+    assert len(places) == 2  # corners of areas are none
+    (area,) = [f for f in features if f["properties"]["kind"] == "no_go_area"]
+    ring = shape(area["geometry"])
+    assert (ring.is_valid, ring.area) == (True, pytest.approx(0.5, abs=1e-3))
+
+
+def test_rooms_of_the_dxf_have_the_true_areas(base: Path, drive: Drive) -> None:
+    space = readfile(_export(base, "dxf", "home.dxf")).modelspace()
+    lines = [line for line in space.query("LWPOLYLINE[layer=='ROOMS']") if isinstance(line, LWPolyline)]
+    found = [Polygon([(x, y) for x, y, *_ in line]) for line in lines]
+    assert len(found) == len(drive.home.rooms)
+    for room in drive.home.rooms:
+        true = Polygon(room.corners)
+        overlaps = [other.intersection(true).area / other.union(true).area for other in found]
+        assert max(overlaps) > 0.95, room.kind
+        assert found[overlaps.index(max(overlaps))].area == pytest.approx(true.area, rel=0.04), room.kind
+
+
+def test_the_keepout_mask_is_as_large_as_the_map(base: Path) -> None:
+    grid = read_map_server(_export(base, "pgm", "grid.pgm").with_suffix(".yaml"))
+    mask = read_map_server(_export(base, "nav2-keepout", "keepout.pgm").with_suffix(".yaml"))
+    assert (mask.cells.shape, mask.origin) == (grid.cells.shape, grid.origin)
+    assert (mask.cells == 100).sum() * 0.05**2 == pytest.approx(0.55, abs=0.1)  # the square, and a line a cell wide
 
 
 def test_nav2_gets_the_dock_and_a_connected_route(base: Path, map_: Map) -> None:
@@ -120,15 +158,25 @@ def test_nav2_gets_the_dock_and_a_connected_route(base: Path, map_: Map) -> None
 def test_valetudo_gets_every_known_cell_once(base: Path, map_: Map) -> None:
     document = json.loads(_export(base, "valetudo", "map.json").read_text())
     grid = map_.render(Parameters()).map_cleaned
+    floor = np.zeros(grid.cells.shape, dtype=np.int64)
     for layer in document["layers"]:
         runs = np.reshape(layer["compressedPixels"], (-1, 3))
         drawn = np.zeros(grid.cells.shape, dtype=np.bool_)
         for x, y, count in runs.tolist():
             assert not drawn[y, x : x + count].any()
             drawn[y, x : x + count] = True
-        np.testing.assert_array_equal(drawn, grid.cells[::-1] == {"floor": 0, "wall": 100}[layer["type"]])
         assert layer["dimensions"]["pixelCount"] == drawn.sum()
-    assert [entity["type"] for entity in document["entities"]] == ["charger_location"]
+        if layer["type"] == "wall":
+            np.testing.assert_array_equal(drawn, grid.cells[::-1] == 100)
+        else:
+            floor += drawn
+    np.testing.assert_array_equal(floor, grid.cells[::-1] == 0)  # of no room, or of one
+    names = [layer["metaData"]["name"] for layer in document["layers"] if layer["type"] == "segment"]
+    assert names[:2] == ["Room 1", "Room 2"]
+    kinds = [entity["type"] for entity in document["entities"]]
+    assert kinds == ["charger_location", "no_go_area", "virtual_wall"]
+    (square,) = [entity["points"] for entity in document["entities"] if entity["type"] == "no_go_area"]
+    assert abs(Polygon(np.reshape(square, (4, 2))).area - 5000) < 150  # cm^2
 
 
 def test_trajectories_and_graph_have_the_nodes(base: Path, map_: Map) -> None:
@@ -145,4 +193,14 @@ def test_what_is_not_there_is_told(tmp_path: Path, map_: Map) -> None:
     places, map_.locations = map_.locations, []
     with pytest.raises(InputError, match="no dock"):
         export(map_, Parameters(), "nav2-docks", str(tmp_path / "x.yaml"))
+    with pytest.raises(InputError, match="no no-go areas"):
+        export(map_, Parameters(), "nav2-keepout", str(tmp_path / "x.pgm"))
     map_.locations = places
+
+
+def test_without_the_packages_rooms_are_left_out(
+    tmp_path: Path, map_: Map, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setitem(sys.modules, "shapely", None)
+    export(map_, Parameters(), "svg", str(tmp_path / "x.svg"))
+    assert "rooms are left out: rooms need the package shapely: pip install 'oort[export]'" in caplog.text

@@ -15,6 +15,8 @@ _TOOLS = {
     "localize": "follow a recorded drive on a saved map",
     "render": "draw a saved map as pictures for map_server",
     "export": "write a saved map in the formats of other programs",
+    "rooms": "list the rooms of a saved map with their areas, and name them",
+    "areas": "list, add and remove areas where the robot shall not go",
     "compare": "lay two replays side by side",
     "merge": "join two saved maps of the same home",
     "simulate": "make up a home and a drive through it",

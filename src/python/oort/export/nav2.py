@@ -11,9 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from ruamel.yaml import YAML
 
+from oort._core import OccupancyGrid
+from oort.areas import Area
 from oort.errors import InputError
 from oort.export.files import write_atomically
 from oort.export.geojson import feature, write_geojson
+from oort.export.map_server import write_map_server
+from oort.export.painting import paint
 from oort.recording.types import Pose
 
 _DOCK = "simple_charging_dock"
@@ -35,6 +39,18 @@ def write_docks(path: Path, docks: Sequence[tuple[str, Pose]]) -> None:
     yaml.default_flow_style = None
     yaml.dump({"docks": entries}, stream)
     write_atomically(path, stream.getvalue().encode())
+
+
+def write_keepout(base: Path, grid: OccupancyGrid, areas: Sequence[Area]) -> None:
+    """Writes ``base``.pgm and .yaml, a mask as large as the map for nav2's keepout filter: no-go areas are occupied.
+
+    Raises InputError if there is none, OortError if a file cannot be written.
+    """
+    if not areas:
+        raise InputError("the map has no no-go areas: oort areas --add makes one")
+    mask = paint(grid, [(area.points, area.kind == "no_go_area") for area in areas])
+    cells = np.where(mask > 0, 100, 0).astype(np.int8)
+    write_map_server(base, cells, grid.resolution, (*grid.origin, 0.0))
 
 
 def write_route(path: Path, nodes: NDArray[np.float64], edges: NDArray[np.int64]) -> None:

@@ -14,6 +14,7 @@ from types import TracebackType
 from numpy.typing import ArrayLike
 
 from oort._core import Map, Parameters, normalise_map_path
+from oort.areas import Area
 from oort.errors import InputError, StateError
 from oort.live.figures import Tracking
 from oort.live.listener import Listener
@@ -173,6 +174,13 @@ class LiveMapper:
         """Names where the sensor is now; the namespace "dock" is for docks. Raises StateError if no scan comes."""
         self._check_open("create_location")
         self._live.places.create(name_space, id)
+
+    def create_area(self, area: Area) -> None:
+        """Keeps an area where the robot shall not go, in the place of one of its kind and name."""
+        self._check_open("create_area")
+        ids = [str(number) for number in range(len(area.points))]
+        self._live.call("graph_loc/clear", [area.name_space, False])
+        self._live.call("graph_loc/create_points", [[area.name_space] * len(ids), area.points, ids])
 
     # ---- what can be asked for ----
 

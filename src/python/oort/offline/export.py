@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a saved map in the formats of other programs."""
 
+import logging
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
@@ -9,13 +10,15 @@ from typing import Any, Literal
 import numpy as np
 
 from oort._core import Map, OccupancyGrid, Parameters
-from oort.errors import InputError
-from oort.export.drawing import write_dxf, write_svg
+from oort.areas import Area, areas_of, is_area
+from oort.errors import InputError, OortError
+from oort.export.drawing import FloorPlan, write_dxf, write_svg
 from oort.export.g2o import write_g2o
 from oort.export.geojson import feature, write_geojson
 from oort.export.kitti import write_kitti
 from oort.export.map_server import write_map_server
-from oort.export.nav2 import thin_route, write_docks, write_route
+from oort.export.named_rooms import ROOMS, NamedRoom, named_rooms
+from oort.export.nav2 import thin_route, write_docks, write_keepout, write_route
 from oort.export.tum import write_tum
 from oort.export.valetudo import write_valetudo
 from oort.export.walls import fit_walls
@@ -27,10 +30,11 @@ _DOCKS = "dock"  # the namespace of docks
 
 FORMATS = {
     "pgm": "map.pgm and map.yaml for map_server (the name's ending counts: .pgm or .png)",
-    "svg": "floor plan: straight walls and places",
-    "dxf": "floor plan for CAD programs, in metres",
-    "geojson": "walls, places and docks, in metres",
+    "svg": "floor plan: straight walls, rooms with their areas, no-go areas and places",
+    "dxf": "the same for CAD programs, in metres",
+    "geojson": "walls, rooms, no-go areas, places and docks, in metres",
     "nav2-docks": "database of docks for nav2's docking server (YAML)",
+    "nav2-keepout": "mask of no-go areas for nav2's keepout filter (a map for its map_server)",
     "nav2-route": "graph of the ways driven for nav2's route server (GeoJSON)",
     "valetudo": "map for home automation in Valetudo's JSON",
     "g2o": "the pose graph",
@@ -55,8 +59,26 @@ def places_of(map_: Map) -> list[tuple[str, str, Pose]]:
     return [(space, id_, pose) for space, id_, pose in found if pose is not None]
 
 
-def _named(map_: Map) -> list[tuple[str, Pose]]:
-    return [(f"{space}/{id_}", pose) for space, id_, pose in places_of(map_)]
+def rooms_of(map_: Map, parameters: Parameters) -> list[NamedRoom]:
+    """The rooms of a map, the largest first. Raises OortError without scipy and shapely."""
+    return named_rooms(fit_walls(map_), _grid(map_, parameters), places_of(map_))
+
+
+def floor_plan(map_: Map, parameters: Parameters) -> FloorPlan:
+    """What a floor plan of a map shows; without scipy and shapely no rooms, and the log says so."""
+    walls, places = fit_walls(map_), places_of(map_)
+    rooms: list[NamedRoom] = []
+    try:
+        rooms = named_rooms(walls, _grid(map_, parameters), places)
+    except OortError as error:
+        logging.getLogger("oort").warning("rooms are left out: %s", error)
+    names = {name for room in rooms for name in room.name.split(", ")}
+    shown = [
+        (f"{space}/{id_}", pose)
+        for space, id_, pose in places
+        if not is_area(space) and not (space == ROOMS and id_ in names)
+    ]
+    return FloorPlan(walls, shown, rooms, areas_of(places))
 
 
 def _docks(map_: Map) -> list[tuple[str, Pose]]:
@@ -76,13 +98,42 @@ def _pgm(map_: Map, parameters: Parameters, out: Path) -> str:
     return f"{base}.{image} {base}.yaml"
 
 
-def _geojson(map_: Map, _: Parameters, out: Path) -> None:
-    walls = np.round(fit_walls(map_), 4).reshape(-1, 2, 2).tolist()
+def _geojson(map_: Map, parameters: Parameters, out: Path) -> None:
+    plan = floor_plan(map_, parameters)
+    walls = np.round(plan.walls, 4).reshape(-1, 2, 2).tolist()
     features = [feature({"kind": "wall"}, "LineString", wall) for wall in walls]
+    features += [_room_feature(named) for named in plan.rooms] + [_area_feature(area) for area in plan.areas]
     for space, id_, (x, y, theta) in places_of(map_):
+        if is_area(space):
+            continue
         properties: dict[str, Any] = {"kind": "place", "namespace": space, "name": id_, "theta": round(theta, 6)}
         features.append(feature(properties, "Point", [round(x, 4), round(y, 4)]))
     write_geojson(out, features, "oort_map")
+
+
+def _room_feature(named: NamedRoom) -> dict[str, Any]:
+    ring = np.round(named.room.outline, 4).tolist()
+    properties = {"kind": "room", "number": named.number, "name": named.name, "area": round(named.room.area, 2)}
+    return feature(properties, "Polygon", [[*ring, ring[0]]])
+
+
+def _area_feature(area: Area) -> dict[str, Any]:
+    points = [[round(x, 4), round(y, 4)] for x, y in area.points]
+    properties = {"kind": area.kind, "name": area.name}
+    if area.kind == "no_go_area":
+        return feature(properties, "Polygon", [[*points, points[0]]])
+    return feature(properties, "LineString", points)
+
+
+def _keepout(map_: Map, parameters: Parameters, out: Path) -> str:
+    base = out.with_suffix("") if out.suffix in (".pgm", ".yaml") else out
+    write_keepout(base, _grid(map_, parameters), areas_of(places_of(map_)))
+    return f"{base}.pgm {base}.yaml"
+
+
+def _valetudo(map_: Map, parameters: Parameters, out: Path) -> None:
+    plan = floor_plan(map_, parameters)
+    write_valetudo(out, _grid(map_, parameters), [pose for _, pose in _docks(map_)], plan.rooms, plan.areas)
 
 
 def _route(map_: Map, _: Parameters, out: Path) -> None:
@@ -97,14 +148,13 @@ def _tum(map_: Map, _: Parameters, out: Path) -> None:
 
 _WRITERS: dict[str, Callable[[Map, Parameters, Path], str | None]] = {
     "pgm": _pgm,
-    "svg": lambda map_, _, out: write_svg(out, fit_walls(map_), _named(map_)),
-    "dxf": lambda map_, _, out: write_dxf(out, fit_walls(map_), _named(map_)),
+    "svg": lambda map_, parameters, out: write_svg(out, floor_plan(map_, parameters)),
+    "dxf": lambda map_, parameters, out: write_dxf(out, floor_plan(map_, parameters)),
     "geojson": _geojson,
     "nav2-docks": lambda map_, _, out: write_docks(out, _docks(map_)),
+    "nav2-keepout": _keepout,
     "nav2-route": _route,
-    "valetudo": lambda map_, parameters, out: write_valetudo(
-        out, _grid(map_, parameters), [pose for _, pose in _docks(map_)]
-    ),
+    "valetudo": _valetudo,
     "g2o": lambda map_, _, out: write_g2o(out, pose_graph(map_)),
     "tum": _tum,
     "kitti": lambda map_, _, out: write_kitti(out, map_.node_poses),

@@ -12,13 +12,20 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from oort._core import SWITCH_ON, Map, OccupancyGrid
+from oort.areas import areas_of_map, is_area
+from oort.errors import OortError
 from oort.evaluation.attempts import Attempt
 from oort.export.map_server import grey_picture
+from oort.export.named_rooms import named_rooms
+from oort.export.walls import fit_walls
 from oort.poses import between, wrap_angle
 from oort.report.arrays import pack
 
 MOST_REJECTED = 3000
 """rejected attempts that the page shows: those with the best inlier ratios"""
+
+MOST_NODES_OF_ROOMS = 1000
+"""of a map that the page shows rooms of: they are found in homes, and fitting walls takes seconds beyond"""
 
 _STEP = 0.005  # [m] of the points of scans
 _MOST_POINTS = 1_500_000  # of all scans together: some 6 MB
@@ -97,8 +104,26 @@ def closure_layer(map_: Map, attempts: Sequence[Attempt]) -> dict[str, Any]:
 
 def place_layer(map_: Map) -> list[dict[str, Any]]:
     """Named places, docks among them."""
-    found = ((space, id_, map_.locate(space, id_)) for space, id_, *_ in map_.locations)
+    found = ((space, id_, map_.locate(space, id_)) for space, id_, *_ in map_.locations if not is_area(space))
     return [{"space": space, "id": id_, "pose": list(pose)} for space, id_, pose in found if pose is not None]
+
+
+def area_layer(map_: Map) -> list[dict[str, Any]]:
+    """Areas and lines where the robot shall not go."""
+    return [{"kind": area.kind, "name": area.name, "points": area.points} for area in areas_of_map(map_)]
+
+
+def room_layer(map_: Map, grid: OccupancyGrid | None) -> list[dict[str, Any]]:
+    """The rooms of a map of a home's size; none without scipy and shapely."""
+    if grid is None or len(map_) > MOST_NODES_OF_ROOMS:
+        return []
+    found = ((space, id_, map_.locate(space, id_)) for space, id_, *_ in map_.locations)
+    places = [(space, id_, pose) for space, id_, pose in found if pose is not None]
+    try:
+        rooms = named_rooms(fit_walls(map_), grid, places)
+    except OortError:
+        return []
+    return [{"label": named.label, "outline": np.round(named.room.outline, 3).tolist()} for named in rooms]
 
 
 def _moved(

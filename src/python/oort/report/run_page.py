@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from oort._core import Map, OccupancyGrid, Parameters, parameter_table
 from oort.evaluation.attempts import Attempt
 from oort.report.arrays import pack
-from oort.report.layers import closure_layer, edge_layer, grid_layer, node_layer, place_layer
+from oort.report.layers import (
+    area_layer,
+    closure_layer,
+    edge_layer,
+    grid_layer,
+    node_layer,
+    place_layer,
+    room_layer,
+)
 from oort.report.replay_report import table_rows
 from oort.report.scan_log import TRACKING_STATES, ScanLog, thinned
 
@@ -47,6 +55,8 @@ def run_page_data(
         "edges": edge_layer(map_),
         "closures": closure_layer(map_, attempts),
         "places": place_layer(map_),
+        "rooms": room_layer(map_, grid),
+        "areas": area_layer(map_),
         "samples": _samples(log, base_poses),
     }
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from oort._core import SWITCH_ON, Map
+from oort.areas import areas_of, is_area
 from oort.errors import StateError
 from oort.live import Drawing, LiveSession
 from oort.live.window import Window
@@ -48,7 +49,8 @@ class Watch:
         ratio = result.inlier_ratio if result is not None and result.was_tracked else None
         sample = [self._clock(), float(len(live.inbox)), mapping["p50"], mapping["p99"], delays["p99"], ratio]
         self.samples.append(sample)
-        places = [{"space": space, "id": id, "pose": list(pose)} for (space, id), pose in snapshot.places.items()]
+        known = [(space, id, pose) for (space, id), pose in snapshot.places.items()]
+        places = [{"space": space, "id": id, "pose": list(pose)} for space, id, pose in known if not is_area(space)]
         return {
             "title": self._title,
             "control": self._control,
@@ -68,6 +70,7 @@ class Watch:
             "left_out": dict(figures.drops.counts),
             "troubles": [str(trouble) for trouble in live.troubles],
             "places": places,
+            "areas": [{"kind": area.kind, "points": area.points} for area in areas_of(known)],
             "drawing": None if drawing is None or snapshot.num_nodes == 0 else drawing.revision,
             "progress": self._progress,
             "sample": sample,

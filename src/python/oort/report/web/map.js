@@ -9,8 +9,10 @@ const COLOURS = {
   rejected: "#7c6bd6",
   node: "#34507a",
   place: "#b45309",
+  no_go: "#dc2626",
   scans: ["#0b6bcb", "#d6336c"],
 };
+const ROOM_COLOURS = ["#2563eb", "#059669", "#d97706", "#7c3aed", "#db2777", "#0891b2", "#65a30d", "#ea580c"];
 const TIME_COLOURS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
 const SIGMA_COLOURS = ["#1a9850", "#91cf60", "#fee08b", "#fc8d59", "#d73027"]; // of chain edges, the surest first
 const SIGMA_LIMITS = [0.01, 0.03, 0.1, 0.3]; // [m]
@@ -28,6 +30,7 @@ class MapView {
     this.onNode = () => {};
     this.onTime = () => {};
     this.addGrid();
+    this.addRooms();
     this.addTrajectory();
     this.addEdges();
     this.addClosures();
@@ -57,6 +60,18 @@ class MapView {
     this.bounds = L.latLngBounds([[y, x], [y + grid.size[1] * grid.resolution, x + grid.size[0] * grid.resolution]]);
     const image = L.imageOverlay(`data:image/png;base64,${grid.png}`, this.bounds, { className: "grid", alt: "occupancy map" });
     this.add("walls", "#222", image, true);
+  }
+
+  // Rooms with their areas, and where the robot shall not go; a run of an earlier version has neither.
+  addRooms() {
+    const corners = (points) => points.map(([x, y]) => [y, x]);
+    const shapes = (items, shape) => L.layerGroup(items.map(shape));
+    const labelled = (shape, text) => shape.bindTooltip(element("span", {}, text), { permanent: true, direction: "center", className: "label" });
+    const { rooms = [], areas = [] } = this.data;
+    const room = ({ outline, label }, k) => labelled(L.polygon(corners(outline), { color: ROOM_COLOURS[k % ROOM_COLOURS.length], weight: 1, fillOpacity: 0.25, interactive: false }), label);
+    const area = ({ kind, points, name }) => labelled((kind === "no_go_area" ? L.polygon : L.polyline)(corners(points), { color: COLOURS.no_go, weight: 3, interactive: false }), name);
+    if (rooms.length) this.add("rooms with their areas", ROOM_COLOURS[0], shapes(rooms, room), false);
+    if (areas.length) this.add("areas where the robot shall not go", COLOURS.no_go, shapes(areas, area), true);
   }
 
   // Runs of consecutive samples with one class each become lines of that class.

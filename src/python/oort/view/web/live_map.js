@@ -77,8 +77,12 @@ class LiveMap {
     if (this.follow && !this.map.getBounds().pad(-0.2).contains([y, x])) this.map.panTo([y, x], { animate: false });
   }
 
-  showPlaces(places) {
+  showPlaces(places, areas) {
     this.groups.places.clearLayers();
+    for (const { kind, points } of areas) {
+      const corners = points.map(([x, y]) => [y, x]);
+      this.groups.places.addLayer((kind === "no_go_area" ? L.polygon : L.polyline)(corners, { color: "#dc2626", weight: 3, interactive: false }));
+    }
     for (const { space, id, pose } of places) {
       const icon = L.divIcon({ className: "place", html: element("span", {}, `${space}/${id}`), iconSize: null });
       this.groups.places.addLayer(L.marker([pose[1], pose[0]], { icon, keyboard: true, alt: `${space}/${id}` }));

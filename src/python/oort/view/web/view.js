@@ -57,11 +57,11 @@ class LiveView {
     this.told = told;
   }
 
-  places({ places, control }) {
-    const now = JSON.stringify(places);
+  places({ places, areas, control }) {
+    const now = JSON.stringify([places, areas]);
     if (now === this.placed) return;
     this.placed = now;
-    this.map.showPlaces(places);
+    this.map.showPlaces(places, areas);
     $("places").replaceChildren(...places.map(({ space, id }) => element("li", {}, `${space}/${id}`, control ? element("button", { type: "button", "aria-label": `Forget ${space}/${id}`, onclick: () => this.forget(space, id) }, "×") : null)));
   }
 
