@@ -7,6 +7,7 @@ import json
 import signal
 import subprocess
 import sys
+import threading
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -261,11 +262,18 @@ def test_a_recording_that_is_watched_gives_the_map_of_a_replay(drive: Drive, tmp
 def test_the_command(drive: Drive, tmp_path: Path) -> None:
     write_carmen(drive, tmp_path / "home.clf")
     command = [f"{sys.prefix}/bin/oort", "view", str(tmp_path / "home.clf"), "--port", "0", "--speed", "inf"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    too_long = threading.Timer(60.0, process.kill)  # its output ends then, and nothing waits for ever
+    too_long.start()
+    try:
         assert process.stdout is not None
         address = process.stdout.readline().removeprefix("open ").strip()
         with urllib.request.urlopen(address, timeout=10.0) as response:
             assert b"/parts/view.js" in response.read()
         assert "home is mapped" in process.stdout.readline()
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)  # SIGINT is ignored where a script's job began the tests
         assert process.wait(20.0) == 0
+    finally:
+        too_long.cancel()
+        process.kill()
+        process.communicate()

@@ -5,6 +5,7 @@
 import argparse
 import math
 import os
+import signal
 import sys
 import threading
 from collections.abc import Sequence
@@ -34,7 +35,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort view",
         description="Shows a recording as it is mapped, or a saved map, on a page for the browser: the map as it "
-        f"grows, the robot, the queue, how long things take. Ends with Ctrl-C. {_EXAMPLE}",
+        f"grows, the robot, the queue, how long things take. Ends with Ctrl-C or SIGTERM. {_EXAMPLE}",
     )
     parser.add_argument("input", nargs="+", help="a recording, as for oort replay, or the path of a saved map")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
@@ -76,6 +77,7 @@ def _run(args: argparse.Namespace) -> None:
         raise InputError(f"--speed {args.speed:g}: it must be above 0")
     parameters = read_parameters(args.params)
     recording = _recording(args, parameters)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends as by Ctrl-C, which a script's job may not hear
     live = LiveSession(parameters, _Teller())
     try:
         title = Path(args.input[0]).name if recording is None else recording.name
@@ -87,7 +89,7 @@ def _run(args: argparse.Namespace) -> None:
                 _play(recording, live, args, viewer)
             threading.Event().wait()
     except KeyboardInterrupt:
-        pass  # how a view ends
+        pass
     finally:
         live.close()
 
