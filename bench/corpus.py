@@ -6,8 +6,8 @@
 
 Takes the folder that OORT_DATASETS names, or --folder. A recording is judged by the relations or the truth beside it
 (NAME.relations; NAME.truth with lines `t x y theta`; NAME.truth.tum), and all by whether the map agrees with itself
-(trials/consistency.py). Milliseconds are CPU time of the thread that takes the scans. --keep leaves results.json and
-what a replay leaves of each recording.
+(oort.evaluation.consistency). Milliseconds are CPU time of the thread that takes the scans. --keep leaves results.json
+and what a replay leaves of each recording.
 """
 
 import argparse
@@ -22,13 +22,13 @@ from pathlib import Path
 import numpy as np
 
 from oort import Parameters, read_parameters
+from oort.evaluation.consistency import consistency
 from oort.evaluation.trajectories import evaluate_ate, evaluate_relations
 from oort.export import Trajectory, read_tum
 from oort.offline.results import write_results
 from oort.poses import Array
 from oort.recording import Recording, Scan, open_recording
 from oort.recording.open import recording_name
-from trials.consistency import consistency
 from trials.datasets import datasets
 from trials.jobs import Figures
 from trials.replays import Replayed, cost, counts, replay

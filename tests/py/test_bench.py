@@ -18,7 +18,7 @@ from oort.simulate.writers import write_drive
 
 sys.path.insert(0, str(ROOT / "bench"))
 
-from trials.consistency import consistency
+from oort.evaluation.consistency import consistency
 from trials.drives import recording_of
 from trials.faults import lost_span
 from trials.replays import replay

@@ -52,6 +52,7 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         "migrate",
         "merge",
         "batch",
+        "tune",
         "compare",
         "view",
         "rooms",

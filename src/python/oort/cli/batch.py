@@ -3,12 +3,11 @@
 """``oort batch RECORDING...``: maps many recordings in parallel, into one table and one page."""
 
 import argparse
-import os
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from oort.cli.tool import run_tool
+from oort.cli.tool import add_worker_arguments, run_tool
 from oort.errors import InputError
 from oort.export.files import write_atomically
 from oort.offline.batch import Outcome, make_jobs, run_batch, write_table
@@ -23,11 +22,11 @@ def _parser() -> argparse.ArgumentParser:
         "(index.html) of them all. Interrupted, it goes on where it was when called again; a recording or parameters "
         "that changed are done anew. Example: oort batch fleet/*.bag --out fleet-maps",
     )
-    parser.add_argument("recordings", metavar="RECORDING", nargs="+", help="bags, MCAP files, CARMEN logs")
-    parser.add_argument("--out", metavar="DIR", default="oort-batch", help="where all goes (default: oort-batch)")
     parser.add_argument(
-        "--jobs", metavar="N", type=int, default=os.cpu_count(), help="so many at a time (default: cores)"
+        "recordings", metavar="RECORDING", nargs="+", help="bags, MCAP files, CARMEN logs; or URLs that fsspec knows"
     )
+    parser.add_argument("--out", metavar="DIR", default="oort-batch", help="where all goes (default: oort-batch)")
+    add_worker_arguments(parser)
     parser.add_argument("--params", metavar="FILE", help="parameters for all (default: the packaged params.json)")
     return parser
 
@@ -38,12 +37,13 @@ def _tell(outcome: Outcome, done: int, total: int) -> None:
 
 
 def _run(args: argparse.Namespace) -> None:
-    read_parameters(args.params)  # an error of theirs is told once, not by each drive
+    if args.params:
+        read_parameters(args.params)  # an error of theirs is told once, not by each drive
     out = Path(args.out)
-    jobs = make_jobs(args.recordings, out, ("--params", args.params) if args.params else ())
+    jobs = make_jobs(args.recordings, out, Path(args.params).read_text() if args.params else None)
     out.mkdir(parents=True, exist_ok=True)
     outcomes: list[Outcome] = []
-    for outcome in run_batch(jobs, max(1, args.jobs)):
+    for outcome in run_batch(jobs, args.jobs, args.cluster):
         outcomes.append(outcome)
         _tell(outcome, len(outcomes), len(jobs))
     write_table(outcomes, out)

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 _TOOLS = {
     "replay": "map a recorded drive",
     "batch": "map many recordings in parallel",
+    "tune": "search parameters with which recordings map better",
     "view": "show a recording as it is mapped, or a saved map, on a page",
     "check": "say what is wrong with a recording or a robot's setup",
     "localize": "follow a recorded drive on a saved map",

@@ -4,6 +4,7 @@
 
 import argparse
 import math
+import os
 import re
 import signal
 import sys
@@ -49,6 +50,14 @@ def add_checksum_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--ignore-checksum", action="store_true", help="read a map though its checksums are lost or do not fit"
     )
+
+
+def add_worker_arguments(parser: argparse.ArgumentParser) -> None:
+    """Where the tools for many recordings do their work."""
+    parser.add_argument(
+        "--jobs", metavar="N", type=int, default=os.cpu_count() or 1, help="so many at a time (default: cores)"
+    )
+    parser.add_argument("--cluster", metavar="ADDRESS", help="a Dask cluster instead, such as tcp://scheduler:8786")
 
 
 def parse_arguments(parser: argparse.ArgumentParser, argv: Sequence[str] | None) -> argparse.Namespace:

@@ -7,14 +7,15 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from oort.errors import InputError, OortError
 from oort.export.files import write_atomically
+from oort.offline.workers import fingerprint, in_pool, is_url, local_copy, open_pool
 
 _STATE = "batch.json"  # within a drive's folder: what it was made from; written last
 
@@ -24,18 +25,16 @@ class Job:
     """One recording of a batch."""
 
     recording: str
+    """its path or URL, as whoever maps it sees it"""
     folder: Path
     """where its results go"""
-    options: tuple[str, ...] = ()
-    """of the replay"""
+    parameters: str | None = None
+    """the text of a parameter file; the packaged ones if None"""
 
     @property
     def key(self) -> str:
-        """What its results depend on: another key makes them anew."""
-        stat = os.stat(self.recording)
-        told = [os.path.abspath(self.recording), stat.st_size, stat.st_mtime_ns, *self.options]
-        told += [Path(word).read_bytes().hex() for word in self.options if os.path.isfile(word)]
-        return hashlib.sha256(json.dumps(told).encode()).hexdigest()
+        """What its results depend on: another key makes them anew. Raises InputError if the recording is gone."""
+        return hashlib.sha256(f"{fingerprint(self.recording)} {self.parameters}".encode()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -52,57 +51,104 @@ class Outcome:
     """whether it was there already"""
 
 
-def make_jobs(recordings: Sequence[str], out: Path, options: Sequence[str] = ()) -> list[Job]:
+@dataclass(frozen=True)
+class _Mapped:
+    """What a worker sends back."""
+
+    error: str | None
+    files: dict[str, bytes]
+    """what the replay wrote, where it could not write into the folder of the job"""
+
+
+def make_jobs(recordings: Sequence[str], out: Path, parameters: str | None = None) -> list[Job]:
     """A job per recording, each with a folder of its own name. Raises InputError for a missing or doubled one."""
     jobs: dict[str, Job] = {}
     for recording in recordings:
-        if not os.path.exists(recording):
+        if not is_url(recording) and not os.path.exists(recording):
             raise InputError(f"{recording} does not exist")
         name = Path(recording).name.split(".")[0] or Path(recording).name
         if name in jobs:  # two folders with recordings of one name
             name = f"{Path(recording).absolute().parent.name}-{name}"
         if name in jobs:
             raise InputError(f"{recording} and {jobs[name].recording} would have one folder, {out / name}; rename one")
-        jobs[name] = Job(recording, out / name, tuple(options))
+        jobs[name] = Job(recording, out / name, parameters)
     if not jobs:
         raise InputError("no recording was named")
     return list(jobs.values())
 
 
-def run_batch(jobs: Sequence[Job], workers: int) -> Iterator[Outcome]:
-    """Runs jobs, so many at a time, and yields their outcomes as they come. What was done before is not done again."""
-    with ThreadPoolExecutor(workers) as pool:
-        futures = [pool.submit(run_job, job) for job in jobs]
-        try:
-            for future in as_completed(futures):
-                yield future.result()
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+def run_batch(jobs: Sequence[Job], workers: int, cluster: str | None = None) -> Iterator[Outcome]:
+    """Runs jobs, so many at a time here or on a cluster, and yields their outcomes as they come.
+
+    What was done before is not done again.
+    """
+    waiting = []
+    for job in jobs:
+        outcome = _done_before(job)
+        if outcome is None:
+            waiting.append(job)
+        else:
+            yield outcome
+    if waiting:
+        with open_pool(workers, cluster) as pool:
+            for job, mapped in in_pool(pool, _map_here if cluster is None else _map_afar, waiting):
+                yield _outcome(job, mapped)
 
 
-def run_job(job: Job) -> Outcome:
-    """Runs one job in a process of its own, unless its results are there."""
-    state = job.folder / _STATE
+def _done_before(job: Job) -> Outcome | None:
+    """The outcome that is there, or why it cannot be told what is there; None if the job is to be done."""
     try:
-        if _read(state).get("key") == job.key:
+        if _read(job.folder / _STATE).get("key") == job.key:
             return Outcome(job.recording, str(job.folder), None, _figures(job.folder), kept=True)
-        command = [
-            sys.executable,
-            "-m",
-            "oort.replay",
-            job.recording,
-            "--out",
-            str(job.folder),
-            "--quiet",
-            *job.options,
-        ]
+    except (OSError, OortError) as error:
+        return Outcome(job.recording, str(job.folder), str(error), {})
+    return None
+
+
+def _map_here(job: Job) -> _Mapped:
+    try:
+        return _Mapped(_replay(job, job.folder), {})
+    except (OSError, OortError) as error:
+        return _Mapped(str(error), {})
+
+
+def _map_afar(job: Job) -> _Mapped:
+    """Maps into a folder that is soon gone and sends back what is in it: nothing is shared but the recording."""
+    try:
+        with tempfile.TemporaryDirectory(prefix="oort-") as place:
+            folder = Path(place) / job.folder.name
+            error = _replay(job, folder)
+            return _Mapped(error, {path.name: path.read_bytes() for path in sorted(folder.glob("*"))})
+    except (OSError, OortError) as error:
+        return _Mapped(str(error), {})
+
+
+def _replay(job: Job, folder: Path) -> str | None:
+    """Maps a recording in a process of its own; the sentence of the error if it cannot be."""
+    with local_copy(job.recording) as path, tempfile.TemporaryDirectory(prefix="oort-") as place:
+        command = [sys.executable, "-m", "oort.replay", path, "--out", str(folder), "--quiet"]
+        if job.parameters is not None:
+            parameters = Path(place) / "params.json"
+            parameters.write_text(job.parameters)
+            command += ["--params", str(parameters)]
         done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-        if done.returncode:
-            last = (done.stderr.strip().splitlines() or [f"ended with status {done.returncode}"])[-1]
-            return Outcome(job.recording, str(job.folder), last.removeprefix("oort replay: "), {})
+    if done.returncode == 0:
+        return None
+    last = (done.stderr.strip().splitlines() or [f"ended with status {done.returncode}"])[-1]
+    return last.removeprefix("oort replay: ")
+
+
+def _outcome(job: Job, mapped: _Mapped | OortError) -> Outcome:
+    """Writes what came from afar; the mark that all is there comes last."""
+    error = str(mapped) if isinstance(mapped, OortError) else mapped.error
+    if isinstance(mapped, OortError) or error is not None:
+        return Outcome(job.recording, str(job.folder), error, {})
+    try:
+        job.folder.mkdir(parents=True, exist_ok=True)
+        for name, content in mapped.files.items():
+            write_atomically(job.folder / name, content)
         figures = _figures(job.folder)
-        write_atomically(state, json.dumps({"key": job.key}).encode())
+        write_atomically(job.folder / _STATE, json.dumps({"key": job.key}).encode())
         return Outcome(job.recording, str(job.folder), None, figures)
     except (OSError, OortError) as error:
         return Outcome(job.recording, str(job.folder), str(error), {})

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from oort import Map
-from oort._core import SWITCH_ON
+from oort._core import SWITCH_ON, Map
 from oort.poses import Array, between, compose
 
 _FAR_APART = 5.0

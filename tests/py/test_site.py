@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""The documentation as a site: it builds, every page is in its menu, and no link or anchor in it is dead."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from ruamel.yaml import YAML
+
+from conftest import ROOT
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("pages")
+    subprocess.run([sys.executable, str(ROOT / "scripts/gather_pages.py"), str(folder)], check=True)
+    return folder
+
+
+def _build(pages: Path, out: Path) -> subprocess.CompletedProcess[str]:
+    settings = YAML(typ="safe").load((ROOT / "mkdocs.yml").read_text())
+    file = out / "mkdocs.yml"
+    with file.open("w") as stream:
+        YAML(typ="safe").dump(settings | {"docs_dir": str(pages), "site_dir": str(out / "site")}, stream)
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", str(file)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_the_site_builds_without_a_dead_link(pages: Path, tmp_path: Path) -> None:
+    done = _build(pages, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "site/docs/loops.html").is_file()
+    assert (tmp_path / "site/docs/images/home.png").is_file()
+
+
+def test_a_dead_link_would_be_found(pages: Path, tmp_path: Path) -> None:
+    for number, link in enumerate(["none.md", "loops.md#no-such-part"]):
+        page = pages / f"docs/added{number}.md"
+        page.write_text(f"# Added\n\n[it]({link})\n")
+        done = _build(pages, tmp_path)
+        page.unlink()
+        assert done.returncode != 0
+        assert f"added{number}.md" in done.stderr
+
+
+def test_every_page_is_in_the_menu(pages: Path) -> None:
+    menu = (ROOT / "mkdocs.yml").read_text()
+    for page in pages.rglob("*.md"):
+        assert f": {page.relative_to(pages)}\n" in menu, page
