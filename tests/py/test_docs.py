@@ -55,6 +55,8 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         "tune",
         "compare",
         "view",
+        "info",
+        "completion",
         "rooms",
         "areas",
         "export",

@@ -5,12 +5,15 @@
 import json
 import sys
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import readfile
+from mcap.reader import make_reader
+from rosbags.typesys import Stores, get_typestore
 from ruamel.yaml import YAML
 from shapely.geometry import Polygon, shape
 
@@ -185,6 +188,29 @@ def test_trajectories_and_graph_have_the_nodes(base: Path, map_: Map) -> None:
     kitti = np.loadtxt(_export(base, "kitti", "k.txt"))
     np.testing.assert_allclose(kitti[:, [3, 7]], map_.node_poses[:, :2])
     np.testing.assert_allclose(np.arctan2(kitti[:, 4], kitti[:, 0]), map_.node_poses[:, 2])
+
+
+def test_the_mcap_holds_the_solved_drive(base: Path, map_: Map) -> None:
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    found: dict[str, list[Any]] = {}
+    with _export(base, "mcap", "drive.mcap").open("rb") as stream:
+        for schema, channel, message in make_reader(stream, validate_crcs=True).iter_messages():
+            assert schema is not None
+            told = store.deserialize_cdr(message.data, schema.name)
+            found.setdefault(channel.topic, []).append(told)
+    assert {topic: len(told) for topic, told in found.items()} == {
+        "/map": 1,
+        "/trajectory": 1,
+        "/tf": len(map_),
+        "/points": len(map_),
+    }
+    grid = map_.render(Parameters()).map_cleaned
+    np.testing.assert_array_equal(np.reshape(found["/map"][0].data, grid.cells.shape), grid.cells)
+    last = found["/tf"][-1].transforms[0].transform.translation
+    assert (last.x, last.y) == pytest.approx(map_.node_poses[-1, :2].tolist())
+    points = np.frombuffer(found["/points"][3].data, dtype="<f4").reshape(-1, 3)
+    cloud = map_.cloud(3)
+    np.testing.assert_allclose(points[:, :2], cloud[cloud[:, 2] == 1.0, :2], rtol=1e-6)
 
 
 def test_what_is_not_there_is_told(tmp_path: Path, map_: Map) -> None:

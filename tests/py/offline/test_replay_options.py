@@ -220,3 +220,11 @@ def test_a_pose_is_of_a_map_to_resume(files: Path, capsys: pytest.CaptureFixture
     assert "--resume" in capsys.readouterr().err
     assert main([str(files / "first.clf"), "--resume", "somewhere"]) == 2
     assert "somewhere" in capsys.readouterr().err
+
+
+def test_the_report_as_json(files: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    args = [str(files / "first.clf"), "--until", "5", "--out", str(tmp_path / "out"), "--json"]
+    assert main(args) == 0
+    told = capsys.readouterr()
+    assert json.loads(told.out) == json.loads((tmp_path / "out" / "report.json").read_text())
+    assert told.err == ""

@@ -15,6 +15,7 @@ from oort.parameters import read_parameters
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort check",
+        epilog="Example: oort check drive.bag --json",
         description="Maps a recorded drive, keeps nothing, and says what is wrong with the recording or the setup.",
     )
     parser.add_argument("input", nargs="+", help="the recording, as for oort replay")

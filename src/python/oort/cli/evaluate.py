@@ -39,7 +39,9 @@ def _format(result: RelationsResult | AteResult) -> str:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="python -m oort.evaluate", description="Compares trajectories with the truth."
+        prog="oort evaluate",
+        epilog="Example: oort evaluate ate trajectory.tum truth.tum",
+        description="Compares trajectories with the truth.",
     )
     commands = parser.add_subparsers(dest="command", required=True)
     relations = commands.add_parser("relations", help="errors of relative poses (Kuemmerle et al. 2009)")

@@ -20,7 +20,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog=f"formats:\n{formats}",
     )
     parser.add_argument("map", metavar="MAP", help="the map's path, with or without .map_capnp")
-    parser.add_argument("format", metavar="FORMAT", choices=FORMATS, help="one of the formats below")
+    parser.add_argument("format", metavar="FORMAT", choices=list(FORMATS), help="one of the formats below")
     parser.add_argument("out", metavar="OUT", help="the file to write")
     parser.add_argument("--params", metavar="FILE", help="parameters of drawing (default: the packaged params.json)")
     add_checksum_argument(parser)

@@ -70,7 +70,11 @@ def _format(figures: dict[str, Any]) -> str:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="oort graph", description="Solves pose graphs in the format of g2o or TORO.")
+    parser = argparse.ArgumentParser(
+        prog="oort graph",
+        epilog="Example: oort graph solve graph.g2o solved.g2o",
+        description="Solves pose graphs in the format of g2o or TORO.",
+    )
     solve = parser.add_subparsers(dest="command", required=True).add_parser("solve", help="solve one")
     solve.add_argument(
         "graph", metavar="IN.g2o", help="VERTEX_SE2 and EDGE_SE2 lines (g2o), or VERTEX2 and EDGE2 (TORO)"

@@ -3,7 +3,9 @@
 """``oort history MAP``: lists the earlier versions of a saved map, or goes back to one."""
 
 import argparse
+import json
 from collections.abc import Sequence
+from dataclasses import asdict
 
 from oort.cli.tool import run_tool
 from oort.history import describe, restore, versions
@@ -12,6 +14,7 @@ from oort.history import describe, restore, versions
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort history",
+        epilog="Example: oort history maps/home --restore 1",
         description="Lists the earlier versions of a saved map: what it was before each of the last sessions that were "
         "saved over it.",
     )
@@ -19,6 +22,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--restore", type=int, metavar="N", help="make version N the map again; what it is now becomes version 1"
     )
+    parser.add_argument("--json", action="store_true", help="print JSON")
     return parser
 
 
@@ -28,6 +32,9 @@ def _run(arguments: argparse.Namespace) -> None:
         print(f"{arguments.map}: is version {arguments.restore} again; what it was is version 1 now")
         return
     found = versions(arguments.map)
+    if arguments.json:
+        print(json.dumps([asdict(version) for version in found], indent=2))
+        return
     for version in found:
         print(describe(version))
     if not found:

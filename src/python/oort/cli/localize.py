@@ -3,6 +3,7 @@
 """``oort localize MAP RECORDING``: follows a recorded drive on a saved map, which stays as it is."""
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,7 +21,9 @@ from oort.recording import Pose
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="oort localize", description="Follows a recorded drive on a saved map, without changing the map."
+        prog="oort localize",
+        description="Follows a recorded drive on a saved map, without changing the map. "
+        "Example: oort localize maps/home drive.bag",
     )
     parser.add_argument("map", help="base path of the saved map, or the .yaml of one of map_server")
     parser.add_argument("input", nargs="+", help="the recording, as for oort replay")
@@ -31,6 +34,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>-localized)")
     add_checksum_argument(parser)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--json", action="store_true", help="print report.json and nothing else but errors")
     return parser
 
 
@@ -43,10 +47,12 @@ def _run(args: argparse.Namespace) -> None:
         start = tuple(args.pose)
     elif args.start != "global":
         start = start_pose(map_, parameters, args.start)
-    drive = follow(recording, scans_with_progress(recording, args.quiet), map_, parameters, start)
+    drive = follow(recording, scans_with_progress(recording, args.quiet or args.json), map_, parameters, start)
     folder = Path(args.out) if args.out else Path("oort-out") / f"{recording.name}-localized"
     report = write_localization(drive, map_, args.map, parameters, folder)
-    if not args.quiet:
+    if args.json:
+        print(json.dumps(report, indent=2))
+    elif not args.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
         print(format_localization(report))

@@ -7,12 +7,13 @@ import signal
 import sys
 from collections.abc import Sequence
 
-_TOOLS = {
+TOOLS = {
     "replay": "map a recorded drive",
     "batch": "map many recordings in parallel",
     "tune": "search parameters with which recordings map better",
     "view": "show a recording as it is mapped, or a saved map, on a page",
     "check": "say what is wrong with a recording or a robot's setup",
+    "info": "say what a saved map or a recording is",
     "localize": "follow a recorded drive on a saved map",
     "render": "draw a saved map as pictures for map_server",
     "export": "write a saved map in the formats of other programs",
@@ -27,15 +28,17 @@ _TOOLS = {
     "history": "list the earlier versions of a saved map, or go back to one",
     "migrate": "write a saved map in the newest format",
     "parameters": "print the table of parameters",
+    "completion": "print what makes a shell complete all these",
 }
+"""what each is for"""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs one tool; exit code 2 for a wrong call."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if not arguments or arguments[0] not in _TOOLS:
+    if not arguments or arguments[0] not in TOOLS:
         stream = sys.stdout if arguments[:1] in (["-h"], ["--help"]) else sys.stderr
-        print("usage: oort TOOL ...", *(f"  {name:<11}{what}" for name, what in _TOOLS.items()), sep="\n", file=stream)
+        print("usage: oort TOOL ...", *(f"  {name:<11}{what}" for name, what in TOOLS.items()), sep="\n", file=stream)
         return 0 if stream is sys.stdout else 2
     try:
         return _run(arguments)

@@ -13,6 +13,7 @@ from oort.parameters import read_parameters
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort merge",
+        epilog="Example: oort merge maps/up maps/down maps/home",
         description="Joins two saved maps of the same home into one, in the frame of the first. Neither is changed. "
         "OUT.png shows the new map, the second one's way and the closures that tie it to the first.",
     )

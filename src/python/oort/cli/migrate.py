@@ -11,7 +11,9 @@ from oort.offline.migrate import migrate
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="oort migrate", description="Writes a saved map of any format that this Oort reads in the newest one."
+        prog="oort migrate",
+        epilog="Example: oort migrate maps/old maps/new",
+        description="Writes a saved map of any format that this Oort reads in the newest one.",
     )
     parser.add_argument("source", metavar="IN", help="the path of the map")
     parser.add_argument("target", metavar="OUT", help="where the new one goes")

@@ -20,6 +20,7 @@ def _views(text: str) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort prune",
+        epilog="Example: oort prune maps/home maps/pruned",
         description="Writes a saved map that grew over many sessions with only the views that it needs. Places, docks "
         "and poses stay; what newer sessions contradict is taken out.",
     )

@@ -13,6 +13,7 @@ from oort.parameters import read_parameters
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort render",
+        epilog="Example: oort render maps/home pictures/home",
         description="Draws a saved map: PREFIX_map.png, and PREFIX_map_cleaned.png without speckle noise, each with "
         "the .yaml that map_server reads. One pixel is one cell: 254 free, 0 occupied, 205 unknown.",
     )

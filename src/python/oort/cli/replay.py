@@ -3,6 +3,7 @@
 """``oort replay INPUT``: maps one recorded drive and writes all that came of it into a folder."""
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -27,12 +28,14 @@ def replay_to_folder(
     options: ReplayOptions,
     out: str | None = None,
     base: str | None = None,
+    *,
+    as_json: bool = False,
 ) -> Sequence[str]:
     """Replays a recording, writes what came of it into the folder ``out`` and the map to the path ``base``.
 
-    They default to oort-out/<name of the recording> and ``out``/map. Unless quiet, the report is printed. Returns the
-    codes of what is wrong with the recording or the setup. Raises OortError, also where the map to go on with would be
-    overwritten.
+    They default to oort-out/<name of the recording> and ``out``/map. Unless quiet, the report is printed; ``as_json``
+    prints report.json. Returns the codes of what is wrong with the recording or the setup. Raises OortError, also where
+    the map to go on with would be overwritten.
     """
     folder = Path(out) if out else Path("oort-out") / recording.name
     map_path = base or str(folder.absolute() / "map")
@@ -57,6 +60,8 @@ def replay_to_folder(
         if troubles := format_troubles(results.report):
             print(troubles)
         print(f"wrote {folder}: {' '.join(name for name in results.written if name != f'the map {map_path}')}")
+    if as_json:
+        print(json.dumps(results.report, indent=2))
     if f"the map {map_path}" in results.written and not options.quiet:
         print(f"map: {map_path}")
     if "report.html" in results.written and not options.quiet:
@@ -69,7 +74,8 @@ def replay_to_folder(
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort replay",
-        description="Maps a recorded drive: a ROS 1 bag, a ROS 2 bag or MCAP, or a CARMEN log (.clf, also .gz, .bz2).",
+        description="Maps a recorded drive: a ROS 1 bag, a ROS 2 bag or MCAP, or a CARMEN log (.clf, also .gz, .bz2). "
+        "Example: oort replay drive.bag --out oort-out/drive",
     )
     parser.add_argument("input", nargs="+", help="the recording; of a bag that was split, all its parts")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
@@ -91,6 +97,7 @@ def _parser() -> argparse.ArgumentParser:
         "--strict", action="store_true", help=f"exit with {UNCERTAIN} if where the robot was is mostly uncertain"
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--json", action="store_true", help="print report.json and nothing else but errors")
     return parser
 
 
@@ -112,10 +119,10 @@ def _run(args: argparse.Namespace) -> int:
         resume=resume,
         ignore_checksum=args.ignore_checksum,
         until=args.until,
-        quiet=args.quiet,
+        quiet=args.quiet or args.json,
         keep_attempts=args.closures,
     )
-    troubles = replay_to_folder(recording, parameters, options, args.out, args.map)
+    troubles = replay_to_folder(recording, parameters, options, args.out, args.map, as_json=args.json)
     return UNCERTAIN if args.strict and "uncertain" in troubles else 0
 
 

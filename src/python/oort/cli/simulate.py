@@ -58,6 +58,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="oort simulate",
+        epilog="Example: oort simulate --seed 3 --out drives",
         description="Simulate a robot's drive through a made-up home: scans, odometry and the truth.",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )

@@ -17,6 +17,7 @@ from oort.export.g2o import write_g2o
 from oort.export.geojson import feature, write_geojson
 from oort.export.kitti import write_kitti
 from oort.export.map_server import write_map_server
+from oort.export.mcap import write_mcap
 from oort.export.named_rooms import ROOMS, NamedRoom, named_rooms
 from oort.export.nav2 import thin_route, write_docks, write_keepout, write_route
 from oort.export.tum import write_tum
@@ -37,6 +38,7 @@ FORMATS = {
     "nav2-keepout": "mask of no-go areas for nav2's keepout filter (a map for its map_server)",
     "nav2-route": "graph of the ways driven for nav2's route server (GeoJSON)",
     "valetudo": "map for home automation in Valetudo's JSON",
+    "mcap": "the solved drive for Foxglove and ros2 bag play: map, tf, trajectory, the nodes' scans",
     "g2o": "the pose graph",
     "tum": "poses of the sensor at the nodes, TUM",
     "kitti": "the same, KITTI",
@@ -155,6 +157,7 @@ _WRITERS: dict[str, Callable[[Map, Parameters, Path], str | None]] = {
     "nav2-keepout": _keepout,
     "nav2-route": _route,
     "valetudo": _valetudo,
+    "mcap": lambda map_, parameters, out: write_mcap(out, map_, _grid(map_, parameters)),
     "g2o": lambda map_, _, out: write_g2o(out, pose_graph(map_)),
     "tum": _tum,
     "kitti": lambda map_, _, out: write_kitti(out, map_.node_poses),

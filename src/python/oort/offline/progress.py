@@ -3,6 +3,7 @@
 """Signs of life while a recording is worked through."""
 
 import sys
+import time
 from collections.abc import Iterator
 
 from tqdm import tqdm
@@ -23,7 +24,10 @@ def with_progress(scans: Iterator[Scan], recording: Recording, quiet: bool) -> I
         yield from tqdm(scans, total=recording.num_scans, desc=recording.name, unit=" scans")
     else:
         step = max(1, recording.num_scans // 10)
+        started = time.monotonic()
         for number, scan in enumerate(scans, start=1):
             yield scan
             if number % step == 0:
-                print(f"{recording.name}: {number} of {recording.num_scans} scans", file=sys.stderr)
+                left = (time.monotonic() - started) / number * max(0, recording.num_scans - number)
+                told = f"{recording.name}: {number} of {recording.num_scans} scans, {left:.0f} s left"
+                print(told, file=sys.stderr)
