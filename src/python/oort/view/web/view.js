@@ -24,7 +24,7 @@ class LiveView {
   update(state) {
     document.title = `Oort: ${state.title}`;
     $("name").textContent = state.title;
-    $("status").textContent = `${state.state.replace("_", " ")}: ${state.nodes} nodes, ${state.closures} closures${state.path ? `, saved at ${state.path}` : ""}`;
+    $("status").textContent = `${state.state.replace("_", " ")}: ${state.nodes} nodes, ${state.closures} new closures${state.path ? `, saved at ${state.path}` : ""}`;
     $("tracking").textContent = state.tracking;
     $("tracking").className = `badge ${state.tracking}`;
     $("progress").hidden = state.progress === null;
