@@ -18,10 +18,10 @@ constexpr double kWorthwhileHits = 0.02;  // another guess must bring this many 
 constexpr double kRetryWindow = 3.0;      // the last try's window, and its prior's standard deviations twice as wide
 constexpr double kRetryPrior = 2.0;
 // The limits on the window are those of a usual rate of scans, where a larger motion is a fault of odometry. Of scans
-// farther apart than this it is none, and the limits are wider.
+// farther apart than this it is none, and where odometry is doubted it is no limit: there the limits are wider.
 constexpr double kLongInterval = 0.5;     // [s]
-constexpr double kLongWindow = 0.3;       // [m]
-constexpr double kLongWindowTheta = 0.5;  // [rad]
+constexpr double kWideWindow = 0.3;       // [m]
+constexpr double kWideWindowTheta = 0.5;  // [rad]
 // Wider windows cost more than a scan may: with kMaxTiles the worst scan of 360 points takes about 10 ms in all.
 constexpr double kWidestWindow = 2.0;       // [m]
 constexpr double kWidestWindowTheta = 1.0;  // [rad]
@@ -93,7 +93,7 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
   join_pending();
   Prior expected = expect(time, odometry);
   hypothesis_ = 0;
-  after_long_ = last_time_ && time - *last_time_ > kLongInterval;
+  is_unusual_ = !alternatives.empty() || (last_time_ && time - *last_time_ > kLongInterval);
   last_time_ = time;
   if (history_.table().empty()) return start(body, time, expected);
   Match match = try_match(body, expected, 1.0);
@@ -208,7 +208,7 @@ Pose Tracker::predict(double time) const {
 // far as bounded work does.
 Window Tracker::window(const Prior& prior, double scale) const {
   const auto half = [&](int i, double low, double most) {
-    const double high = after_long_ ? std::max(most, i < 2 ? kLongWindow : kLongWindowTheta) : most;
+    const double high = is_unusual_ ? std::max(most, i < 2 ? kWideWindow : kWideWindowTheta) : most;
     const double unmatched = kWindowSigmas * std::sqrt(drift_(i, i));
     const double width = std::clamp(kWindowSigmas * std::sqrt(prior.covariance(i, i)), low, high + unmatched);
     return std::min(scale * width, std::max(high, i < 2 ? kWidestWindow : kWidestWindowTheta));

@@ -51,6 +51,26 @@ TEST(Tracker, FollowsADriveWithoutOdometry) {
   }
 }
 
+// The widest window is that of a usual motion: odometry that is doubted may be off by more, as its covariance says.
+TEST(Tracker, SearchesAsFarAsDoubtedOdometryMayBeOff) {
+  TrackerParams params;
+  params.max_search_range_xy = params.max_search_range_theta = 0.1;
+  const auto steps = drive(test::room(), 20, 5);
+  const Pose turned = oval(19) * Pose{0.02, 0.0, 0.35};
+  std::mt19937 random(5);
+  const Points body = scan(test::room(), turned, kSensor, random);
+  const Motion stands{Pose{}, Eigen::Vector3d(0.01, 0.01, 0.0144).asDiagonal()};
+  for (const bool doubted : {false, true}) {
+    Tracker tracker(params);
+    tracker.reset(oval(0));
+    for (int i = 0; i < 20; ++i) tracker.track(steps[i].body, 0.1 * i, steps[i].odometry);
+    const Motion goes_on{between(oval(18), oval(19)), stands.covariance};
+    const Match match =
+        tracker.track(body, 2.0, stands, doubted ? std::vector<Motion>{goes_on} : std::vector<Motion>{});
+    EXPECT_EQ(turn(match.pose, turned) < 0.02 && distance(match.pose, turned) < 0.03, doubted);
+  }
+}
+
 TEST(Tracker, AddsByTheRule) {
   TrackerParams params;
   params.add.key_distance = params.add.key_angle = std::numeric_limits<double>::infinity();

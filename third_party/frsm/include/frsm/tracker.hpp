@@ -131,7 +131,7 @@ class Tracker {
   Velocity velocity_;
   bool matched_ = false;
   std::optional<double> last_time_;  // of the last scan [s]
-  bool after_long_ = false;          // whether the scan before is long ago
+  bool is_unusual_ = false;          // whether the scan before is long ago, or odometry is doubted
   std::size_t hypothesis_ = 0;
   int rejected_ = 0;  // unusable scans in a row
   long added_scans_ = 0;
