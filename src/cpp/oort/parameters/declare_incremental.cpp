@@ -28,9 +28,11 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
   v(p.initial_search_range_theta, "initial_search_range_theta", {0.01, "rad", {0.0, 3.15}},
     "Half width of the search in heading.");
   v(p.max_search_range_xy, "max_search_range_xy", {0.1, "m", {0.0, 5.0}},
-    "Half width to which the search may grow; of scans that are more than 0.5 s apart 0.3 m at least.");
+    "Half width to which the search may grow; 0.3 m at least for scans more than 0.5 s apart and where odometry is "
+    "doubted.");
   v(p.max_search_range_theta, "max_search_range_theta", {0.1, "rad", {0.0, 3.15}},
-    "Half width in heading to which the search may grow; of scans that are more than 0.5 s apart 0.5 rad at least.");
+    "Half width in heading to which the search may grow; 0.5 rad at least for scans more than 0.5 s apart and where "
+    "odometry is doubted.");
   v(p.add_scan_hit_thresh, "add_scan_hit_thresh", {0.95, "fraction", {0.0, 1.0}},
     "A scan joins the local map if its inlier ratio is lower.");
   v(p.stationary_motion_model, "stationary_motion_model", false,

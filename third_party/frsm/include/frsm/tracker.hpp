@@ -35,7 +35,7 @@ struct TrackerParams {
   AddRule add;
   int max_num_scans = 60;                   ///< history: the local map holds the last K/2 to K scans that joined (>= 2)
   double initial_search_range_xy = 0.1;     ///< smallest half window [m]
-  double max_search_range_xy = 0.25;        ///< largest half window [m], of scans at more than 2 Hz and undoubted odometry
+  double max_search_range_xy = 0.25;        ///< largest half window [m], at more than 2 Hz without alternatives
   double initial_search_range_theta = 0.1;  ///< [rad]
   double max_search_range_theta = 0.25;     ///< [rad]
   bool stationary_motion_model = false;     ///< without odometry: expect no motion, rather than constant velocity
