@@ -3,52 +3,116 @@
 // A robot whose place is not known any more finds home (docs/tracking.md).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "mapping_fixtures.hpp"
+#include "oort/map/parts.hpp"
 #include "oort/mapper/mapper.hpp"
+#include "oort/mapper/segment_search.hpp"
 
 namespace oort {
 namespace {
 
 using namespace testing;
 
-double worst_error(const Mapper& mapper, const Pose2& T_world_sensor, const Pose2& T_world_map) {
-  const Pose2 error = between(T_world_sensor, T_world_map * mapper.sensor_pose());
-  return std::max(error.translation().norm(), std::abs(error.theta));
-}
+/// Two laps of a room, then `carry`, then another lap that begins half way round while odometry goes on as if nothing
+/// had happened.
+class CarriedRobot {
+ public:
+  template <class Carry>
+  explicit CarriedRobot(const Carry& carry, bool threaded = true) : mapper_(parameters(threaded), kMount) {
+    const std::size_t lap = whole_.size() / 3;
+    before_ = {whole_.begin(), whole_.begin() + static_cast<std::ptrdiff_t>(2 * lap)};
+    drive(mapper_, world_, before_, odometry_of(before_, 0.01, 0.01));
+    carry(mapper_);
+    after_ = {whole_.begin() + static_cast<std::ptrdiff_t>(lap + lap / 2), whole_.end()};
+  }
 
-/// Two laps, then `interrupted`, then another lap that begins half way round while odometry goes on as if nothing had
-/// happened. Returns how far off the sensor is after so many metres of it.
-template <class Interruption>
-double error_after(double metres, const Interruption& interrupted, bool threaded = true) {
-  const World world = make_room();
-  Parameters parameters = documented_parameters();
-  parameters.global_slam_thread = threaded;
-  Mapper mapper(parameters, kMount);
-  const std::vector<Pose2> whole = laps(3.0);
-  const std::size_t lap = whole.size() / 3;
-  const std::vector<Pose2> before(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(2 * lap));
-  drive(mapper, world, before, odometry_of(before, 0.01, 0.01));
-  interrupted(mapper);
-  const auto begin = whole.begin() + static_cast<std::ptrdiff_t>(lap + lap / 2);
-  const std::vector<Pose2> after(begin, begin + static_cast<std::ptrdiff_t>(metres / 0.04));
-  drive(mapper, world, after, odometry_of(after, 0.01, 0.01, 2), 1000.0);
-  return worst_error(mapper, after.back() * kMount, before.front() * kMount);
+  /// So far of the other lap.
+  void drive_on(double metres) {
+    after_.resize(static_cast<std::size_t>(metres / 0.04));
+    drive(mapper_, world_, after_, odometry_of(after_, 0.01, 0.01, 2), 1000.0);
+  }
+
+  /// The larger of metres and radians.
+  double error() const {
+    const Pose2 T_world_map = before_.front() * kMount;
+    const Pose2 error = between(after_.back() * kMount, T_world_map * mapper_.sensor_pose());
+    return std::max(error.translation().norm(), std::abs(error.theta));
+  }
+
+  Mapper& mapper() { return mapper_; }
+
+ private:
+  static Parameters parameters(bool threaded) {
+    Parameters parameters = documented_parameters();
+    parameters.global_slam_thread = threaded;
+    return parameters;
+  }
+
+  const World world_ = make_room();
+  const std::vector<Pose2> whole_ = laps(3.0);
+  std::vector<Pose2> before_, after_;
+  Mapper mapper_;
+};
+
+void pause(Mapper& mapper) {
+  mapper.resume_from_paused();
 }
 
 TEST(SegmentSearchTest, ARobotCarriedWhilePausedIsHomeWithinMetres) {
-  EXPECT_LT(error_after(6.0, [](Mapper& mapper) { mapper.resume_from_paused(); }), 0.1);
+  CarriedRobot robot(pause);
+  robot.drive_on(6.0);
+  EXPECT_LT(robot.error(), 0.1);
+  EXPECT_TRUE(parts_of(robot.mapper().map()).loose.empty());
 }
 
 TEST(SegmentSearchTest, ASessionAtAWrongPoseIsHomeWithinMetres) {
-  EXPECT_LT(error_after(6.0, [](Mapper& mapper) { mapper.begin_session({4.0, -3.0, 3.0}); }), 0.1);
+  CarriedRobot robot([](Mapper& mapper) { mapper.begin_session({4.0, -3.0, 3.0}); });
+  robot.drive_on(6.0);
+  EXPECT_LT(robot.error(), 0.1);
 }
 
 TEST(SegmentSearchTest, FindsTheSamePlaceWithoutTheThread) {
-  const auto pause = [](Mapper& mapper) { mapper.resume_from_paused(); };
-  EXPECT_EQ(error_after(6.0, pause, true), error_after(6.0, pause, false));
+  CarriedRobot with(pause, true), without(pause, false);
+  with.drive_on(6.0);
+  without.drive_on(6.0);
+  EXPECT_EQ(with.error(), without.error());
+}
+
+TEST(SegmentSearchTest, AtTheEndWhatNoClosureTiesIsLookedForAtAllHeadings) {
+  CarriedRobot robot(pause);
+  robot.drive_on(6.0);
+  Map map = robot.mapper().map();
+  const Pose2 home = map.graph.nodes.back().pose;
+  const TrajectorySegments segments = TrajectorySegments::of_map(map);
+  const std::uint64_t begin = segments.segment_begin(map.graph.nodes.size() - 1);
+  ASSERT_GT(begin, 0u);
+  map.graph.switchable_edges.clear();
+  for (Node& node : map.graph.nodes) {
+    if (node.id >= begin) node.pose = Pose2{3.0, -2.0, 2.0} * node.pose;
+  }
+  SegmentSearch search{documented_parameters()};
+  int looks = 100;
+  const std::vector<SegmentFinding> findings = search.look_for_all(map, segments, looks);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings.front().nodes.front().begin, begin);
+  EXPECT_TRUE(findings.front().disproved);
+  EXPECT_GE(findings.front().closures.size(), 3u);
+  const Pose2 off = between(home, findings.front().T_new_old * map.graph.nodes.back().pose);
+  EXPECT_LT(off.translation().norm(), 0.1);
+  EXPECT_LT(std::abs(off.theta), 0.05);
+  looks = 0;
+  EXPECT_TRUE(search.look_for_all(map, segments, looks).empty()) << "it may look no more";
+}
+
+TEST(SegmentSearchTest, LooksForNothingOnAnEmptyMap) {
+  SegmentSearch search{Parameters()};
+  EXPECT_FALSE(search.is_due(0));
+  int looks = 10;
+  EXPECT_TRUE(search.look_for_all(Map{}, TrajectorySegments(), looks).empty());
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ Correction GlobalSlam::work(WorkMeter& meter) {
     const WorkClock clock(work_seconds_.candidates);
     loops_.look(map(), map_.segments(), not_looked_from_.front(), &meter);
     not_looked_from_.pop_front();
-    return {{}, std::nullopt, counts_, {}, {}, {}};
+    return nothing();
   }
   const WorkClock clock(work_seconds_.matching);
   return found(trusted(loops_.work(map(), map_.segments(), counts_.loops, closure_log_, &meter)));
@@ -156,9 +156,18 @@ void GlobalSlam::tie_loose_parts(Correction& all) {
   }
 }
 
+/// But counts.
+Correction GlobalSlam::nothing() const {
+  Correction correction;
+  correction.counts = counts_;
+  return correction;
+}
+
 Correction GlobalSlam::found(const std::vector<Closure>& closures) {
   for (const Closure& closure : closures) schedule_.add_closure(map_.add(closure));
-  return {closures, std::nullopt, counts_, {}, {}, {}};
+  Correction correction = nothing();
+  correction.closures = closures;
+  return correction;
 }
 
 std::vector<Closure> GlobalSlam::trusted(std::vector<Closure> closures) const {
@@ -168,7 +177,7 @@ std::vector<Closure> GlobalSlam::trusted(std::vector<Closure> closures) const {
 }
 
 Correction GlobalSlam::placed(const SegmentFinding& finding) {
-  if (finding.is_nothing()) return {{}, std::nullopt, counts_, {}, {}, {}};
+  if (finding.is_nothing()) return nothing();
   if (finding.withdrawn) {
     map_.withdraw_ties(finding.nodes);
     is_on_.clear();
@@ -191,7 +200,9 @@ Correction GlobalSlam::placed(const SegmentFinding& finding) {
 
 Correction GlobalSlam::solved() {
   count_switches();
-  return {{}, map_.solution(), counts_, {}, {}, {}};
+  Correction correction = nothing();
+  correction.solution = map_.solution();
+  return correction;
 }
 
 void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {

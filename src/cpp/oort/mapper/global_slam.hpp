@@ -75,6 +75,7 @@ class GlobalSlam {
     std::vector<Location> locations;
   };
 
+  Correction nothing() const;
   Correction found(const std::vector<Closure>& closures);
   std::vector<Closure> trusted(std::vector<Closure> closures) const;
   Correction placed(const SegmentFinding& finding);

@@ -194,7 +194,7 @@ SegmentFinding SegmentSearch::look_for(const NodeRange& segment, const Map& map,
   std::vector<FoundPlace> answers;
   int looks = 0, contradicted = 0;
   const std::uint64_t step =
-      std::max((segment.end - segment.begin) / MapperTuning::kMaxLooks, MapperTuning::kFirstSearch);
+      std::max((segment.end - segment.begin) / MapperTuning::kMaxLooks, MapperTuning::kLeastSearchSpacing);
   for (std::uint64_t node = segment.begin + MapperTuning::kFirstSearch - 1; node < segment.end; node += step) {
     if (looks_left-- <= 0) return {};
     ++looks;
