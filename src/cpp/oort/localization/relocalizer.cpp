@@ -118,12 +118,14 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   search.ratio = effort.ratio;
   search.apart_xy = search.apart_theta = LocalizationTuning::kPeakSpacing;
   search.max_expansions = effort.max_expansions;
+  search.max_peaks = effort.max_peaks;
   const frsm::Points sparse = at_most(effort.max_points, one_per_cell(points, LocalizationTuning::kSearchVoxel));
   search.theta_step = theta_step(sparse, map_->coarse().params().cell);
   const frsm::Peaks peaks =
       frsm::find_peaks(map_->coarse(), sparse, {limits.origin_x + half_x, limits.origin_y + half_y, 0.0},
                        {half_x, half_y, M_PI}, search, on_lookups);
   complete = peaks.complete;
+  if (!complete && !effort.weighs_incomplete) return {};
   const double reach = std::max(LocalizationTuning::kFineReach, 2.0 * map_->coarse().params().cell);
   std::vector<Hypothesis> found;
   for (const frsm::Peak& peak : peaks.peaks) {

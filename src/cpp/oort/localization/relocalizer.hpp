@@ -43,6 +43,9 @@ struct SearchEffort {
   double ratio = 0.75;                  ///< places of less than this share of the best score are no rivals
   std::size_t max_points = 100000;      ///< of the scans, that are looked for everywhere
   std::size_t max_expansions = 150000;  ///< see frsm::PeakParams
+  std::size_t max_peaks = 32;           ///< the same
+  /// Whether places are weighed although the search ended early: the answer is ambiguous anyway.
+  bool weighs_incomplete = true;
 };
 
 /// Finds the robot on a map without a guess: branch and bound over the whole map and all headings (Hess et al. 2016),

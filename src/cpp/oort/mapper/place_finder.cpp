@@ -80,7 +80,8 @@ void PlaceFinder::forget() {
 
 std::optional<FoundPlace> PlaceFinder::find(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
                                             std::uint64_t node, WorkMeter* meter) const {
-  const SearchEffort effort{MapperTuning::kRivalScore, MapperTuning::kSearchPoints, MapperTuning::kSearchExpansions};
+  const SearchEffort effort{MapperTuning::kRivalScore, MapperTuning::kSearchPoints, MapperTuning::kSearchExpansions,
+                            MapperTuning::kSearchPeaks, false};
   frsm::OnLookups on_lookups;
   if (meter != nullptr) {
     on_lookups = [meter](std::uint64_t lookups) {

@@ -45,6 +45,7 @@ struct MapperTuning {
   static constexpr double kRivalScore = 0.85;
   static constexpr std::size_t kSearchPoints = 250;
   static constexpr std::size_t kSearchExpansions = 100000;
+  static constexpr std::size_t kSearchPeaks = 8;  ///< where more score as well, the place is ambiguous
 
   // Two answers agree within this; what they say of a bent map is no better.
   static constexpr double kSameAnswer = 0.3;          ///< [m]
