@@ -97,11 +97,13 @@ TEST(SegmentSearchTest, AtTheEndWhatNoClosureTiesIsLookedForAtAllHeadings) {
   SegmentSearch search{documented_parameters()};
   int looks = 100;
   const std::vector<SegmentFinding> findings = search.look_for_all(map, segments, looks);
-  ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings.front().nodes.front().begin, begin);
-  EXPECT_TRUE(findings.front().disproved);
-  EXPECT_GE(findings.front().closures.size(), 3u);
-  const Pose2 off = between(home, findings.front().T_new_old * map.graph.nodes.back().pose);
+  const auto found = std::find_if(findings.begin(), findings.end(), [begin](const SegmentFinding& finding) {
+    return finding.nodes.front().begin == begin;  // the laps have segments of their own, that nothing ties now
+  });
+  ASSERT_NE(found, findings.end());
+  EXPECT_TRUE(found->disproved);
+  EXPECT_GE(found->closures.size(), 3u);
+  const Pose2 off = between(home, found->T_new_old * map.graph.nodes.back().pose);
   EXPECT_LT(off.translation().norm(), 0.1);
   EXPECT_LT(std::abs(off.theta), 0.05);
   looks = 0;
