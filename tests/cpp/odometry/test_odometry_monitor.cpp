@@ -74,6 +74,27 @@ TEST_F(Driving, OdometryThatStandsStillIsFrozenOnceMuchIsMissedAndCatchesUp) {
   EXPECT_EQ(hypotheses.T_before_after[1].x, caught_up.x);
 }
 
+TEST_F(Driving, AJumpAfterAStandstillMayBeWhatWasDrivenMeanwhile) {
+  for (int k = 0; k < 20; ++k) {  // along a bare wall a scan does not tell that it moves
+    odometry({});
+    monitor.moved({}, false);
+  }
+  const MotionHypotheses hypotheses = odometry({0.8, 0.0, 0.1});
+  ASSERT_EQ(hypotheses.T_before_after.size(), 2u);
+  EXPECT_EQ(hypotheses.T_before_after[0].x, 0.8);
+  EXPECT_EQ(hypotheses.T_before_after[1].x, 0.0) << "odometry may have begun again";
+  monitor.moved({0.8, 0.0, 0.1}, false);
+  EXPECT_EQ(odometry({3.0, 0.0, 0.0}).T_before_after[1].x, 3.0) << "right after a motion it is a jump";
+}
+
+TEST_F(Driving, AJumpThatNobodyDrivesInTheTimeOfAStandstillIsAJump) {
+  for (int k = 0; k < 20; ++k) {
+    odometry({});
+    monitor.moved({}, false);
+  }
+  EXPECT_EQ(odometry({5.0, 0.0, 0.0}).T_before_after[0].x, 0.0);
+}
+
 TEST_F(Driving, ARobotThatStopsIsBelievedToStand) {
   drive(20);
   const MotionHypotheses hypotheses = odometry({});

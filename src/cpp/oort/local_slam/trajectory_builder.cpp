@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/local_slam/trajectory_builder.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "oort/local_slam/tuning.hpp"
@@ -85,7 +87,9 @@ void TrajectoryBuilder::track(LocalScan& scan, const MotionHypotheses& hypothese
 void TrajectoryBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses,
                                         const Pose2& T_odom_base_before, const Pose2& T_base_sensor) {
   Pose2 moved = hypotheses.T_before_after[scan.tracked.hypothesis];
-  if (!scan.missed && !scan.tracked.degenerate && scan.tracked.inlier_ratio >= LocalSlamTuning::kTellingInliers) {
+  const bool is_telling =
+      !scan.missed && !scan.tracked.degenerate && scan.tracked.inlier_ratio >= LocalSlamTuning::kTellingInliers;
+  if (is_telling) {
     const Pose2 T_odom_sensor = T_odom_sensor_tracked_ * between(T_local_sensor_tracked_, scan.tracked.T_local_sensor);
     const Pose2 matched = between(T_odom_base_before, T_odom_sensor * inverse(T_base_sensor));
     scan.odometry_is_wrong = !hypotheses.holds(matched);
@@ -93,12 +97,22 @@ void TrajectoryBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses&
   }
   scan.T_odom_base = T_odom_base_before * moved;
   scan.T_odom_sensor = scan.T_odom_base * T_base_sensor;
-  if (!scan.odometry_is_wrong) return;
-  doubt_since_newest_ = Eigen::Vector3d(LocalSlamTuning::kDoubtedEdgeSigma, LocalSlamTuning::kDoubtedEdgeSigma,
-                                        LocalSlamTuning::kDoubtedEdgeSigmaTheta)
-                            .cwiseAbs2()
-                            .asDiagonal();
-  doubt_since_anchor_ = doubt_since_newest_;
+  if (scan.odometry_is_wrong) {
+    doubt(LocalSlamTuning::kDoubtedEdgeSigma, LocalSlamTuning::kDoubtedEdgeSigmaTheta);
+  } else if (!is_telling) {  // which of them is true stays open
+    for (const Pose2& other : hypotheses.T_before_after) {
+      const Pose2 apart = between(moved, other);
+      doubt(std::min(apart.translation().norm(), LocalSlamTuning::kOpenEdgeSigma),
+            std::min(std::abs(apart.theta), LocalSlamTuning::kOpenEdgeSigmaTheta));
+    }
+  }
+}
+
+/// Odometry since the newest node is at least as uncertain as that [m, rad].
+void TrajectoryBuilder::doubt(double sigma, double sigma_theta) {
+  const Eigen::Vector3d variance = Eigen::Vector3d(sigma, sigma, sigma_theta).cwiseAbs2();
+  doubt_since_newest_.diagonal() = doubt_since_newest_.diagonal().cwiseMax(variance);
+  doubt_since_anchor_.diagonal() = doubt_since_anchor_.diagonal().cwiseMax(variance);
 }
 
 /// The odometry that there is: from match to match.

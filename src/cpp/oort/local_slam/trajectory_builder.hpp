@@ -119,6 +119,7 @@ class TrajectoryBuilder {
   void forget();
   void settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_odom_base_before,
                        const Pose2& T_base_sensor);
+  void doubt(double sigma, double sigma_theta);
   void follow_match(LocalScan& scan, const Pose2& T_base_sensor) const;
   void begin_local_map(LocalScan& scan, const Pose2& T_local_sensor);
   void restart_if_poor(LocalScan& scan);

@@ -32,6 +32,10 @@ struct LocalSlamTuning {
   // And over an edge on which it was doubted; still one that submaps may be drawn over.
   static constexpr double kDoubtedEdgeSigma = 0.3;       ///< [m]
   static constexpr double kDoubtedEdgeSigmaTheta = 0.3;  ///< [rad]
+  // The same where no match tells which motion is true: how far they are apart, up to this; just less than what begins
+  // a segment (kContradictedVariance).
+  static constexpr double kOpenEdgeSigma = 0.5;        ///< [m]
+  static constexpr double kOpenEdgeSigmaTheta = 0.24;  ///< [rad]
 
   // Surfaces in the local map are off by this much from one another, which turns a scan that sees little of them. Of
   // 60 degree views in simulated homes, edges err by 0.014 rad where the returns lie within 0.5 m of their middle.

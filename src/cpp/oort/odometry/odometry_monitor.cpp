@@ -55,11 +55,14 @@ MotionHypotheses OdometryMonitor::judge(double time, const Pose2& T_before_after
     hypotheses.T_before_after = {T_before_after, *on};
   } else {
     hypotheses.T_before_after = {T_before_after};
-    if (!possible) {
+    if (!possible && catches_up(interval, T_before_after)) {
+      hypotheses.T_before_after.push_back(Pose2{});
+    } else if (!possible) {
       hypotheses.T_before_after = {on.value_or(Pose2{}), T_before_after};
       if (on) hypotheses.T_before_after.push_back(Pose2{});
     }
   }
+  stood_ = is_still(T_before_after) ? stood_ + interval : 0.0;
   judged_doubted_ = hypotheses.is_doubted();
   return hypotheses;
 }
@@ -93,6 +96,14 @@ void OdometryMonitor::forget() {
   believed_.reset();
   missed_ = Pose2{};
   is_frozen_ = false;
+  stood_ = 0.0;
+}
+
+/// Whether that may be what the base did since odometry stood still: a freeze shows in no scan along a bare wall.
+bool OdometryMonitor::catches_up(double interval, const Pose2& motion) const {
+  if (stood_ <= 0.0 || stood_ > OdometryTuning::kMaxFreeze) return false;
+  return distance(motion) <= OdometryTuning::kFrozenSpeed * (stood_ + interval) &&
+         std::abs(motion.theta) <= OdometryTuning::kFrozenTurnRate * (stood_ + interval);
 }
 
 bool OdometryMonitor::is_possible(double interval, const Pose2& motion) const {

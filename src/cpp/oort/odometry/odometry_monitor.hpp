@@ -60,6 +60,7 @@ class OdometryMonitor {
   };
 
   bool is_possible(double interval, const Pose2& motion) const;
+  bool catches_up(double interval, const Pose2& motion) const;
   std::optional<Pose2> going_on(double interval) const;
 
   std::optional<double> last_time_;
@@ -69,6 +70,7 @@ class OdometryMonitor {
   std::optional<Motion> believed_;  // the last motion
   Pose2 missed_;                    // what was accepted while odometry was frozen
   bool is_frozen_ = false;
+  double stood_ = 0.0;  // [s] for which odometry has said exactly nothing
   std::uint64_t fault_count_ = 0;
   std::vector<OdometryFault> faults_;
 };

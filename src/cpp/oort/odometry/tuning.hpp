@@ -94,7 +94,12 @@ struct OdometryTuning {
   // Faults: what odometry missed in all while it should have stood, from which on it is frozen.
   static constexpr double kFrozenError = 0.1;        ///< [m]
   static constexpr double kFrozenErrorTheta = 0.15;  ///< [rad]
-  static constexpr std::size_t kMaxFaults = 1000;    ///< that are kept with their times; all are counted
+  // Faults: a jump that a robot may have driven while odometry stood still, not for longer than it stays frozen, is
+  // believed first.
+  static constexpr double kMaxFreeze = 10.0;       ///< [s]
+  static constexpr double kFrozenSpeed = 1.0;      ///< [m/s], how fast robots drive
+  static constexpr double kFrozenTurnRate = 2.0;   ///< [rad/s]
+  static constexpr std::size_t kMaxFaults = 1000;  ///< that are kept with their times; all are counted
 };
 
 }  // namespace oort
