@@ -15,6 +15,7 @@ PACKAGE = ROOT / "src" / "python" / "oort"
 ORDER = [
     "_core",
     "errors",
+    "inputs",
     "poses",
     "parameters",
     "config",

@@ -209,10 +209,21 @@ void bind_graph(py::module_& m) {
       "new. The first node of each connected part keeps its pose. Returns "
       "(poses (N, 3), switches (M,) in [0, 1], summary). Raises InputError and ParameterError.");
   m.def(
-      "optimize_map", [](Map& map, const OptimizerOptions& options) { return optimize(map.graph, options); },
-      py::arg("map"), py::arg("options") = OptimizerOptions{}, py::call_guard<py::gil_scoped_release>(),
-      "Solves the pose graph of a map in place, from its poses and switches; no other thread may use the map "
-      "meanwhile. Dock closures of a Mapper's map are as firm as its parameters say (docs/optimiser.md), those of a "
+      "optimize_map",
+      [](Map& map, const OptimizerOptions& options) {
+        Graph graph = map.graph;
+        const OptimizerOptions copy = options;
+        OptimizerSummary summary;
+        {
+          const py::gil_scoped_release release;
+          summary = optimize(graph, copy);
+        }
+        map.graph = std::move(graph);
+        return summary;
+      },
+      py::arg("map"), py::arg("options") = OptimizerOptions{},
+      "Solves the pose graph of a map in place, from its poses and switches. Dock closures of a Mapper's map are as "
+      "firm as its parameters say (docs/optimiser.md), those of a "
       "map that was loaded are like others. Returns the summary. Raises InputError and ParameterError; the map is then "
       "unchanged.");
   m.def("optimize_map_with_landmarks", &optimize_map_with_landmarks, py::arg("map"), py::arg("times"),

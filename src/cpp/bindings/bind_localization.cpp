@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bindings.hpp"
+#include "guarded.hpp"
 #include "oort/localization/localizer.hpp"
 #include "oort/localization/relocalizer.hpp"
 #include "states.hpp"
@@ -52,8 +53,13 @@ void bind_reference(py::module_& m) {
            py::arg("sweep") = py::none(), "The sweep is the sensor's.");
   py::class_<ReferenceMap, std::shared_ptr<ReferenceMap>>(m, "ReferenceMap",
                                                           "A saved map made ready to find a robot on it.")
-      .def(py::init<const Map&, const Parameters&>(), py::arg("map"), py::arg("parameters"),
-           py::call_guard<py::gil_scoped_release>(), "Raises InputError if the map is empty or contradicts itself.");
+      .def(py::init([](const Map& map, const Parameters& parameters) {
+             const Map snapshot = map;
+             const Parameters copy = parameters;
+             const py::gil_scoped_release release;
+             return std::make_shared<ReferenceMap>(snapshot, copy);
+           }),
+           py::arg("map"), py::arg("parameters"), "Raises InputError if the map is empty or contradicts itself.");
 }
 
 void bind_relocalizer(py::module_& m) {
@@ -104,28 +110,31 @@ std::optional<PoseTuple> tuple_of(const std::optional<Pose2>& pose) {
 }
 
 void bind_localizer(py::module_& m) {
-  py::class_<Localizer>(m, "Localizer", "Follows a robot on a map that does not change. Not thread-safe.")
+  using GuardedLocalizer = Guarded<Localizer>;
+  py::class_<GuardedLocalizer>(
+      m, "Localizer",
+      "Follows a robot on a map that does not change. Threads may share it: its calls are made "
+      "one after the other.")
       .def(py::init([](const std::shared_ptr<ReferenceMap>& map, const Parameters& parameters, const PoseTuple& mount) {
-             return std::make_unique<Localizer>(map, parameters, pose_of(mount));
+             return std::make_unique<GuardedLocalizer>(map, parameters, pose_of(mount));
            }),
            py::arg("map"), py::arg("parameters"), py::arg("sensor_on_base") = PoseTuple{0.0, 0.0, 0.0})
       .def(
           "start_at",
-          [](Localizer& l, const PoseTuple& pose, const Eigen::Matrix3d& covariance) {
-            l.start_at(pose_of(pose), covariance);
+          [](GuardedLocalizer& guard, const PoseTuple& pose, const Eigen::Matrix3d& covariance) {
+            guard.aside([&](Localizer& l) { l.start_at(pose_of(pose), covariance); });
           },
           py::arg("sensor_on_map"), py::arg("covariance"),
           "Says about where the sensor is at the next scan; the covariance is along the axes of the map.")
-      .def("start_searching", &Localizer::start_searching, "Forgets the pose.")
+      .def("start_searching", guarded(&Localizer::start_searching), "Forgets the pose.")
       .def(
           "add_ranges",
-          [](Localizer& l, double time, double angle_min, double angle_increment, double range_min, double range_max,
-             const Ranges& ranges, const PoseTuple& odometry, const SweepTuple& sweep) {
+          [](GuardedLocalizer& guard, double time, double angle_min, double angle_increment, double range_min,
+             double range_max, const Ranges& ranges, const PoseTuple& odometry, const SweepTuple& sweep) {
             const LaserScan scan{
                 time,      angle_min, angle_increment,
                 range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
-            const py::gil_scoped_release release;
-            l.add_scan(scan, pose_of(odometry), sweep_of(sweep));
+            guard.aside([&](Localizer& l) { l.add_scan(scan, pose_of(odometry), sweep_of(sweep)); });
           },
           py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
           py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
@@ -146,19 +155,33 @@ void bind_localizer(py::module_& m) {
           py::arg("sweep") = py::none(),
           "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.")
       .def_property_readonly(
-          "state", [](const Localizer& l) { return l.state(); }, "How well the sensor\'s place is known.")
+          "state", [](GuardedLocalizer& guard) { return guard.with([](const Localizer& l) { return l.state(); }); },
+          "How well the sensor\'s place is known.")
       .def_property_readonly(
-          "T_map_sensor", [](const Localizer& l) { return tuple_of(l.T_map_sensor()); },
+          "T_map_sensor",
+          [](GuardedLocalizer& guard) {
+            return guard.with([](const Localizer& l) { return tuple_of(l.T_map_sensor()); });
+          },
           "The sensor's pose at the latest scan; None while searching.")
       .def_property_readonly(
-          "T_map_odom", [](const Localizer& l) { return tuple_of(l.T_map_odom()); },
+          "T_map_odom",
+          [](GuardedLocalizer& guard) {
+            return guard.with([](const Localizer& l) { return tuple_of(l.T_map_odom()); });
+          },
           "Where odometry's frame is on the map; None while searching.")
       .def_property_readonly(
-          "covariance", [](const Localizer& l) { return array_of(l.covariance()); },
+          "covariance",
+          [](GuardedLocalizer& guard) {
+            return guard.with([](const Localizer& l) { return array_of(l.covariance()); });
+          },
           "(3, 3) of T_map_sensor, along the axes of the map.")
-      .def_property_readonly("support", &Localizer::support, "How well the latest scan fitted, at most 1.")
+      .def_property_readonly("support", guarded(&Localizer::support), "How well the latest scan fitted, at most 1.")
       .def_property_readonly(
-          "statistics", [](const Localizer& l) { return dict_of(l.statistics()); }, "Counts since it was made.");
+          "statistics",
+          [](GuardedLocalizer& guard) {
+            return guard.with([](const Localizer& l) { return dict_of(l.statistics()); });
+          },
+          "Counts since it was made.");
 }
 
 }  // namespace

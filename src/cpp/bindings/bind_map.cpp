@@ -134,14 +134,16 @@ py::list clouds(const Map& map) {
   return result;
 }
 
-RenderedMap rendered(const Map& map, const Parameters& parameters) {
+// Maps and parameters are taken by value (clouds are shared) where Python's lock is given up: other threads may change
+// them meanwhile.
+RenderedMap rendered(const Map map, const Parameters parameters) {  // NOLINT(*-unnecessary-value-param)
   const py::gil_scoped_release release;
   return render(map, parameters);
 }
 
 using Box = std::array<double, 4>;  // x_min, y_min, x_max, y_max
 
-RenderedMap rendered_within(const Map& map, const Parameters& parameters, const std::optional<Box>& within,
+RenderedMap rendered_within(const Map map, const Parameters parameters, const std::optional<Box>& within,
                             const std::optional<std::vector<std::uint64_t>>& nodes) {
   const py::gil_scoped_release release;
   const std::vector<std::uint64_t> chosen = nodes ? *nodes : parts_of(map).main;
@@ -230,15 +232,19 @@ void bind_map_class(py::module_& m) {
       .def_property(
           "locations", &get_locations, &set_locations,
           "Named places: a list of (namespace, id, node_id, (x, y, theta)) with the pose in the node's frame. "
-          "Assign a list to replace them, but not while another thread saves this map.")
+          "Assign a list to replace them.")
       .def_property_readonly("loose_parts", &loose_parts,
                              "Nodes that nothing ties to the rest, after a pause, in a session or after a kidnapping: "
                              "for each such part an array of their ids. Where it lies is not known.")
       .def("locate", &located, py::arg("name_space"), py::arg("id"), "A place's pose in the map, or None.")
       .def(
-          "save", [](const Map& map, const std::string& path) { save_map(path, map); }, py::arg("path"),
-          py::call_guard<py::gil_scoped_release>(),
-          "Writes the map's three files as one, as save_map does. Raises MapFileError.")
+          "save",
+          [](const Map& map, const PathText& path) {
+            const Map snapshot = map;
+            const py::gil_scoped_release release;
+            save_map(path.text, snapshot);
+          },
+          py::arg("path"), "Writes the map's three files as one, as save_map does. Raises MapFileError.")
       .def("render", &rendered, py::arg("parameters") = Parameters(),
            "Draws the map to navigate by; of the parameters output_map counts. Raises ParameterError or InputError.");
 }
@@ -249,9 +255,9 @@ void bind_storage(py::module_& m) {
       .value("METADATA", Saved::kMetadata);
   m.def(
       "load_map",
-      [](const std::string& path, bool ignore_checksum) {
+      [](const PathText& path, bool ignore_checksum) {
         const py::gil_scoped_release release;
-        return load_map(path, LoadOptions{ignore_checksum});
+        return load_map(path.text, LoadOptions{ignore_checksum});
       },
       py::arg("path"), py::arg("ignore_checksum") = false,
       "Reads a map given by its base path, one of its files, or X.capnp. Raises MapFileError.");
@@ -261,25 +267,39 @@ void bind_storage(py::module_& m) {
   m.attr("FORMAT_VERSION") = py::int_(kFormatVersion);
   m.def(
       "read_map_format",
-      [](const std::string& path, bool ignore_checksum) {
+      [](const PathText& path, bool ignore_checksum) {
         const py::gil_scoped_release release;
-        return read_map_format(path, LoadOptions{ignore_checksum});
+        return read_map_format(path.text, LoadOptions{ignore_checksum});
       },
       py::arg("path"), py::arg("ignore_checksum") = false,
       "In which format a map is, even if it is too new to be loaded. Raises MapFileError.");
   m.def(
       "save_map",
-      [](const std::string& path, const Map& map, bool as_original) {
+      [](const PathText& path, const Map& map, bool as_original) {
+        const Map snapshot = map;
         const py::gil_scoped_release release;
-        save_map(path, map, SaveOptions{as_original});
+        save_map(path.text, snapshot, SaveOptions{as_original});
       },
       py::arg("path"), py::arg("map"), py::arg("as_original") = false,
       "Writes a map's three files as one, in the newest format or as the original Oort did. Raises MapFileError; the "
       "old map is then still whole.");
-  m.def("save_metadata", &save_metadata, py::arg("path"), py::arg("map"), py::call_guard<py::gil_scoped_release>(),
-        "Writes a map's locations, or the whole map where those on disk would not fit them. Raises MapFileError.");
   m.def(
-      "normalise_map_path", &normalise_map_path, py::arg("path"),
+      "save_metadata",
+      [](const PathText& path, const Map& map) {
+        const Map snapshot = map;
+        const py::gil_scoped_release release;
+        return save_metadata(path.text, snapshot);
+      },
+      py::arg("path"), py::arg("map"),
+      "Writes a map's locations, or the whole map where those on disk would not fit them. Raises MapFileError.");
+  m.def(
+      "normalise_map_path",
+      [](const PathText& path) {
+        const std::string base = normalise_map_path(path.text);
+        return py::reinterpret_steal<py::str>(
+            PyUnicode_DecodeFSDefaultAndSize(base.data(), static_cast<py::ssize_t>(base.size())));
+      },
+      py::arg("path"),
       "The absolute base path B of a map given as B, B.map_capnp, B.map_meta_capnp or X.capnp, links followed. Raises "
       "MapFileError.");
 }

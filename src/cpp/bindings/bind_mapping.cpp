@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "guarded.hpp"
 #include "oort/maintenance/prune.hpp"
 #include "oort/mapper/mapper.hpp"
 #include "states.hpp"
@@ -198,6 +199,154 @@ void bind_scan_result(py::module_& m) {
       .def_readonly("corrected", &ScanResult::corrected, "Whether closures or a solution took effect with the scan.");
 }
 
+void bind_scans(py::class_<Guarded<Mapper>>& c) {
+  c.def(py::init([](const Parameters& p, const PoseTuple& pose) {
+          return std::make_unique<Guarded<Mapper>>(p, pose_of(pose));
+        }),
+        py::arg("parameters"), py::arg("sensor_on_base") = PoseTuple{0.0, 0.0, 0.0})
+      .def(
+          "mount_sensor",
+          [](Guarded<Mapper>& guard, const PoseTuple& pose) {
+            guard.aside([&](Mapper& mapper) { mapper.mount_sensor(pose_of(pose)); });
+          },
+          py::arg("sensor_on_base"), "Says where the sensor sits on the base, before the first scan.")
+      .def(
+          "add_ranges",
+          [](Guarded<Mapper>& guard, double time, double angle_min, double angle_increment, double range_min,
+             double range_max, const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges,
+             const PoseTuple& odometry, const SweepTuple& sweep) {
+            const LaserScan scan = scan_of(time, angle_min, angle_increment, range_min, range_max, ranges);
+            return guard.aside(
+                [&](Mapper& mapper) { return mapper.add_scan(scan, pose_of(odometry), sweep_of(sweep)); });
+          },
+          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
+          py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
+          "Takes the next scan with T_odom_base at its stamp and, for one whose beams were not measured at once, where "
+          "the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError; "
+          "nothing changes then.")
+      .def(
+          "add_ranges_of_other",
+          [](Guarded<Mapper>& guard, const PoseTuple& mount, double time, double angle_min, double angle_increment,
+             double range_min, double range_max,
+             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
+             const SweepTuple& sweep) {
+            const LaserScan scan = scan_of(time, angle_min, angle_increment, range_min, range_max, ranges);
+            guard.aside([&](Mapper& mapper) {
+              mapper.add_scan_of_other(pose_of(mount), scan, pose_of(odometry), sweep_of(sweep));
+            });
+          },
+          py::arg("sensor_on_base"), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
+          py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
+          py::arg("sweep") = py::none(),
+          "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.");
+}
+
+void bind_calls(py::class_<Guarded<Mapper>>& c) {
+  c.def("request_dock_closure", guarded(&Mapper::request_dock_closure),
+        "Has the current place linked to the dock, beside the scans to come.")
+      .def_property_readonly("dock_closure_found", guarded(&Mapper::dock_closure_found),
+                             "Whether the last request found a closure; None without one, or while it is looked for.")
+      .def("notify_docked", guarded(&Mapper::notify_docked),
+           "Links the current place to the dock, and waits for that. Whether a closure was found.")
+      .def(
+          "begin_session",
+          [](Guarded<Mapper>& guard, const PoseTuple& pose) {
+            return guard.aside([&](Mapper& mapper) { return mapper.begin_session(pose_of(pose)); });
+          },
+          py::arg("sensor_on_map"),
+          "The next scan begins a new trajectory segment at about this pose of the map, which is pruned first if it "
+          "shows most places more often than keep_views asks for. The node that each node became or is carried by.")
+      .def("resume_from_paused", guarded(&Mapper::resume_from_paused),
+           "The next scan makes a node whose link to the last one is very uncertain.")
+      .def("finish", guarded(&Mapper::finish), "Brings the map to its final solution.")
+      .def(
+          "map",
+          [](Guarded<Mapper>& guard) { return guard.aside([](const Mapper& mapper) { return Map(mapper.map()); }); },
+          "A snapshot of the map.")
+      .def(
+          "set_map",
+          [](Guarded<Mapper>& guard, const Map& map) {
+            const Map snapshot = map;
+            guard.aside([&](Mapper& mapper) { mapper.set_map(snapshot); });
+          },
+          py::arg("map"), "Replaces everything by a map from elsewhere.")
+      .def_property_readonly("num_nodes",
+                             [](Guarded<Mapper>& guard) {
+                               return guard.with([](const Mapper& mapper) { return mapper.map().graph.nodes.size(); });
+                             })
+      .def_property_readonly("has_pose", guarded(&Mapper::has_pose), "Whether the sensor's pose in the map is known.")
+      .def_property_readonly(
+          "sensor_pose",
+          [](Guarded<Mapper>& guard) {
+            return guard.with([](const Mapper& mapper) { return tuple_of(mapper.sensor_pose()); });
+          },
+          "The latest scan's T_map_sensor at the current solution.")
+      .def_property_readonly(
+          "odom_pose",
+          [](Guarded<Mapper>& guard) {
+            return guard.with([](const Mapper& mapper) { return tuple_of(mapper.T_map_odom()); });
+          },
+          "T_map_odom at the current solution.");
+}
+
+void bind_places(py::class_<Guarded<Mapper>>& c) {
+  c.def(
+       "create_location",
+       [](Guarded<Mapper>& guard, const std::string& name_space, const std::string& id, const PoseTuple& pose) {
+         guard.aside([&](Mapper& mapper) { mapper.create_location(name_space, id, pose_of(pose)); });
+       },
+       py::arg("name_space"), py::arg("id"), py::arg("pose"), "Names a pose of the map.")
+      .def(
+          "create_points",
+          [](Guarded<Mapper>& guard, const std::vector<std::string>& name_spaces,
+             const std::vector<std::array<double, 2>>& points, const std::vector<std::string>& ids) {
+            std::vector<Eigen::Vector2d> vectors;
+            for (const auto& p : points) vectors.emplace_back(p[0], p[1]);
+            guard.aside([&](Mapper& mapper) { mapper.create_points(name_spaces, vectors, ids); });
+          },
+          py::arg("name_spaces"), py::arg("points"), py::arg("ids"),
+          "Names points of the map, relative to the node nearest to their centroid.")
+      .def(
+          "delete_location",
+          [](Guarded<Mapper>& guard, const std::string& name_space, const std::string& id) {
+            return guard.aside([&](Mapper& mapper) { return mapper.delete_location(name_space, id); });
+          },
+          py::arg("name_space"), py::arg("id"))
+      .def(
+          "locate",
+          [](Guarded<Mapper>& guard, const std::string& name_space, const std::string& id) -> std::optional<PoseTuple> {
+            const auto pose = guard.aside([&](const Mapper& mapper) { return mapper.locate(name_space, id); });
+            return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
+          },
+          py::arg("name_space"), py::arg("id"), "The place's pose in the map now, or None.")
+      .def_property_readonly(
+          "locations", [](Guarded<Mapper>& guard) { return guard.with(&locations_of); },
+          "(namespace, id, node id, T_node_location) of each place.");
+}
+
+void bind_figures(py::class_<Guarded<Mapper>>& c) {
+  c.def_property_readonly(
+       "statistics",
+       [](Guarded<Mapper>& guard) {
+         return guard.with([](const Mapper& mapper) { return dict_of(mapper.statistics()); });
+       },
+       "Counts since the mapper was made.")
+      .def_property_readonly(
+          "work_seconds",
+          [](Guarded<Mapper>& guard) {
+            return guard.with([](const Mapper& mapper) { return dict_of(mapper.work_seconds()); });
+          },
+          "CPU seconds since the mapper was made, by kind of work; they differ from run to run.")
+      .def("keep_closure_attempts", guarded(&Mapper::keep_closure_attempts), py::arg("capacity"),
+           "Keeps the latest attempts to close loops, so many at most.")
+      .def_property_readonly(
+          "closure_attempts",
+          [](Guarded<Mapper>& guard) {
+            return guard.with([](const Mapper& mapper) { return list_of(mapper.closure_attempts()); });
+          },
+          "(query node, candidate node, why it was rejected or None, T_candidate_query, inlier ratio) of each kept.");
+}
+
 }  // namespace
 
 py::dict dict_of(const RejectionCounts& counts) {
@@ -222,110 +371,13 @@ py::dict dict_of(const ClosureCounts& counts) {
 void bind_mapping(py::module_& m) {
   bind_pruning(m);
   bind_scan_result(m);
-  py::class_<Mapper>(m, "Mapper", "Turns scans with odometry into a map. Not thread-safe.")
-      .def(py::init(
-               [](const Parameters& p, const PoseTuple& pose) { return std::make_unique<Mapper>(p, pose_of(pose)); }),
-           py::arg("parameters"), py::arg("sensor_on_base") = PoseTuple{0.0, 0.0, 0.0})
-      .def(
-          "mount_sensor", [](Mapper& mapper, const PoseTuple& pose) { mapper.mount_sensor(pose_of(pose)); },
-          py::arg("sensor_on_base"), "Says where the sensor sits on the base, before the first scan.")
-      .def(
-          "add_ranges",
-          [](Mapper& mapper, double time, double angle_min, double angle_increment, double range_min, double range_max,
-             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
-             const SweepTuple& sweep) {
-            const LaserScan scan = scan_of(time, angle_min, angle_increment, range_min, range_max, ranges);
-            const py::gil_scoped_release release;
-            return mapper.add_scan(scan, pose_of(odometry), sweep_of(sweep));
-          },
-          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
-          py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
-          "Takes the next scan with T_odom_base at its stamp and, for one whose beams were not measured at once, where "
-          "the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError; "
-          "nothing changes then.")
-      .def(
-          "add_ranges_of_other",
-          [](Mapper& mapper, const PoseTuple& mount, double time, double angle_min, double angle_increment,
-             double range_min, double range_max,
-             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
-             const SweepTuple& sweep) {
-            mapper.add_scan_of_other(pose_of(mount),
-                                     {time, angle_min, angle_increment, range_min, range_max,
-                                      std::vector<float>(ranges.data(), ranges.data() + ranges.size())},
-                                     pose_of(odometry), sweep_of(sweep));
-          },
-          py::arg("sensor_on_base"), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
-          py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
-          py::arg("sweep") = py::none(),
-          "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.")
-      .def("request_dock_closure", &Mapper::request_dock_closure,
-           "Has the current place linked to the dock, beside the scans to come.")
-      .def_property_readonly("dock_closure_found", &Mapper::dock_closure_found,
-                             "Whether the last request found a closure; None without one, or while it is looked for.")
-      .def("notify_docked", &Mapper::notify_docked, py::call_guard<py::gil_scoped_release>(),
-           "Links the current place to the dock, and waits for that. Whether a closure was found.")
-      .def(
-          "begin_session", [](Mapper& mapper, const PoseTuple& pose) { return mapper.begin_session(pose_of(pose)); },
-          py::arg("sensor_on_map"), py::call_guard<py::gil_scoped_release>(),
-          "The next scan begins a new trajectory segment at about this pose of the map, which is pruned first if it "
-          "shows most places more often than keep_views asks for. The node that each node became or is carried by.")
-      .def("resume_from_paused", &Mapper::resume_from_paused,
-           "The next scan makes a node whose link to the last one is very uncertain.")
-      .def("finish", &Mapper::finish, py::call_guard<py::gil_scoped_release>(), "Brings the map to its final solution.")
-      .def(
-          "map",
-          [](const Mapper& mapper) {
-            const py::gil_scoped_release release;
-            return Map(mapper.map());
-          },
-          "A snapshot of the map.")
-      .def(
-          "set_map", [](Mapper& mapper, const Map& map) { mapper.set_map(map); }, py::arg("map"),
-          py::call_guard<py::gil_scoped_release>(), "Replaces everything by a map from elsewhere.")
-      .def_property_readonly("num_nodes", [](const Mapper& mapper) { return mapper.map().graph.nodes.size(); })
-      .def_property_readonly("has_pose", &Mapper::has_pose, "Whether the sensor's pose in the map is known.")
-      .def_property_readonly(
-          "sensor_pose", [](const Mapper& mapper) { return tuple_of(mapper.sensor_pose()); },
-          "The latest scan's T_map_sensor at the current solution.")
-      .def_property_readonly(
-          "odom_pose", [](const Mapper& mapper) { return tuple_of(mapper.T_map_odom()); },
-          "T_map_odom at the current solution.")
-      .def(
-          "create_location",
-          [](Mapper& mapper, const std::string& name_space, const std::string& id, const PoseTuple& pose) {
-            mapper.create_location(name_space, id, pose_of(pose));
-          },
-          py::arg("name_space"), py::arg("id"), py::arg("pose"), "Names a pose of the map.")
-      .def(
-          "create_points",
-          [](Mapper& mapper, const std::vector<std::string>& name_spaces,
-             const std::vector<std::array<double, 2>>& points, const std::vector<std::string>& ids) {
-            std::vector<Eigen::Vector2d> vectors;
-            for (const auto& p : points) vectors.emplace_back(p[0], p[1]);
-            mapper.create_points(name_spaces, vectors, ids);
-          },
-          py::arg("name_spaces"), py::arg("points"), py::arg("ids"),
-          "Names points of the map, relative to the node nearest to their centroid.")
-      .def("delete_location", &Mapper::delete_location, py::arg("name_space"), py::arg("id"))
-      .def(
-          "locate",
-          [](const Mapper& mapper, const std::string& name_space, const std::string& id) -> std::optional<PoseTuple> {
-            const auto pose = mapper.locate(name_space, id);
-            return pose ? std::make_optional(tuple_of(*pose)) : std::nullopt;
-          },
-          py::arg("name_space"), py::arg("id"), "The place's pose in the map now, or None.")
-      .def_property_readonly("locations", &locations_of, "(namespace, id, node id, T_node_location) of each place.")
-      .def_property_readonly(
-          "statistics", [](const Mapper& mapper) { return dict_of(mapper.statistics()); },
-          "Counts since the mapper was made.")
-      .def_property_readonly(
-          "work_seconds", [](const Mapper& mapper) { return dict_of(mapper.work_seconds()); },
-          "CPU seconds since the mapper was made, by kind of work; they differ from run to run.")
-      .def("keep_closure_attempts", &Mapper::keep_closure_attempts, py::arg("capacity"),
-           "Keeps the latest attempts to close loops, so many at most.")
-      .def_property_readonly(
-          "closure_attempts", [](const Mapper& mapper) { return list_of(mapper.closure_attempts()); },
-          "(query node, candidate node, why it was rejected or None, T_candidate_query, inlier ratio) of each kept.");
+  py::class_<Guarded<Mapper>> mapper(
+      m, "Mapper",
+      "Turns scans with odometry into a map. Threads may share it: its calls are made one after the other.");
+  bind_scans(mapper);
+  bind_calls(mapper);
+  bind_places(mapper);
+  bind_figures(mapper);
 }
 
 }  // namespace oort

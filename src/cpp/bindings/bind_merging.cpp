@@ -46,8 +46,10 @@ void bind_merging(py::module_& m) {
   m.def(
       "merge_maps",
       [](const Map& a, const Map& b, const Parameters& parameters, const std::optional<PoseTuple>& T_a_b) {
+        const Map snapshot_a = a, snapshot_b = b;  // other threads may change them meanwhile
+        const Parameters copy = parameters;
         const py::gil_scoped_release release;
-        return merge_maps(a, b, parameters, T_a_b ? std::make_optional(pose_of(*T_a_b)) : std::nullopt);
+        return merge_maps(snapshot_a, snapshot_b, copy, T_a_b ? std::make_optional(pose_of(*T_a_b)) : std::nullopt);
       },
       py::arg("a"), py::arg("b"), py::arg("parameters") = Parameters(), py::arg("T_a_b") = py::none(),
       "Joins two maps of the same home into one in the frame of the first. T_a_b is about where the second one's "

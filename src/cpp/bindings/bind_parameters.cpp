@@ -70,9 +70,9 @@ void bind_parameters(py::module_& m) {
       .def("to_dict", &to_dict, "Every path and its value, in the order of params.json.");
   m.def(
       "read_parameters",
-      [](const std::string& path) {
+      [](const PathText& path) {
         std::vector<std::string> warnings;
-        Parameters parameters = read_parameters(path, &warnings);
+        Parameters parameters = read_parameters(path.text, &warnings);
         return std::make_pair(std::move(parameters), std::move(warnings));
       },
       py::arg("path"),

@@ -25,6 +25,11 @@ inline PoseTuple tuple_of(const Pose2& p) {
   return {p.x, p.y, p.theta};
 }
 
+/// A path as the operating system has it, whatever bytes that are.
+struct PathText {
+  std::string text;
+};
+
 /// The counts by their texts, in their order.
 pybind11::dict dict_of(const RejectionCounts& counts);
 
@@ -55,3 +60,26 @@ void bind_sensor(pybind11::module_& m);
 void bind_merging(pybind11::module_& m);
 
 }  // namespace oort
+
+namespace pybind11::detail {
+
+/// From str, bytes or os.PathLike, as Python's own functions take paths.
+template <>
+struct type_caster<oort::PathText> {
+  PYBIND11_TYPE_CASTER(oort::PathText, const_name("str"));
+
+  bool load(handle source, bool /*convert*/) {
+    object path = reinterpret_steal<object>(PyOS_FSPath(source.ptr()));
+    for (const char* errors : {"surrogateescape", "surrogatepass"}) {
+      if (!path || !PyUnicode_Check(path.ptr())) break;
+      const object bytes = reinterpret_steal<object>(PyUnicode_AsEncodedString(path.ptr(), "utf-8", errors));
+      if (bytes) path = bytes;
+    }
+    PyErr_Clear();
+    if (!path || !PyBytes_Check(path.ptr())) return false;
+    value.text = reinterpret_borrow<pybind11::bytes>(path);
+    return true;
+  }
+};
+
+}  // namespace pybind11::detail

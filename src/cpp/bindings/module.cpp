@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/pybind11.h>
 
+#include <exception>
+#include <new>
+#include <stdexcept>
+
 #include "bindings.hpp"
 #include "oort/geometry/errors.hpp"
 
@@ -21,6 +25,16 @@ PYBIND11_MODULE(_core, m) {
       "Input cannot be used: a recording, a scan, a pose, a graph.";
   py::register_exception<oort::StateError>(m, "StateError", root.ptr()).doc() =
       "A call does not fit the state: nothing is being mapped, there is a map already, there is no such place.";
+  static PyObject* const input_error = m.attr("InputError").ptr();
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+      PyErr_SetString(input_error, "it takes more memory than there is; give less, or look for a broken number in it");
+    } catch (const std::logic_error& error) {  // frsm's, of numbers that no sensor measures
+      PyErr_SetString(input_error, error.what());
+    }
+  });
 
   oort::bind_states(m);
   oort::bind_parameters(m);

@@ -151,7 +151,7 @@ class Map:
     @property
     def locations(self) -> list[tuple[str, str, int, tuple[float, float, float]]]:
         """Named places: a list of (namespace, id, node_id, (x, y, theta)) with the pose in the node's frame. Assign a
-        list to replace them, but not while another thread saves this map.
+        list to replace them.
         """
     @locations.setter
     def locations(self, value: Sequence[tuple[str, str, int, tuple[float, float, float]]]) -> None: ...
@@ -370,7 +370,7 @@ class ScanResult:
         """Whether the scan matcher was asked."""
 
 class Mapper:
-    """Turns scans with odometry into a map. Not thread-safe."""
+    """Turns scans with odometry into a map. Threads may share it: its calls are made one after the other."""
     def __init__(
         self, parameters: Parameters, sensor_on_base: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ) -> None: ...
@@ -515,7 +515,7 @@ class Relocalizer:
         """Looks for one or a few scans, oldest first, joined by odometry; the answer is the newest one's pose."""
 
 class Localizer:
-    """Follows a robot on a map that does not change. Not thread-safe."""
+    """Follows a robot on a map that does not change. Threads may share it: its calls are made one after the other."""
     def __init__(
         self, map: ReferenceMap, parameters: Parameters, sensor_on_base: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ) -> None: ...
@@ -659,9 +659,9 @@ def optimize_graph(
     """
 
 def optimize_map(map: Map, options: OptimizerOptions = ...) -> OptimizerSummary:
-    """Solves the pose graph of a map in place, from its poses and switches; no other thread may use the map meanwhile.
-    Dock closures of a Mapper's map are as firm as its parameters say (docs/optimiser.md), those of a map that was
-    loaded are like others. Returns the summary. Raises InputError and ParameterError; the map is then unchanged.
+    """Solves the pose graph of a map in place, from its poses and switches. Dock closures of a Mapper's map are as firm
+    as its parameters say (docs/optimiser.md), those of a map that was loaded are like others. Returns the summary.
+    Raises InputError and ParameterError; the map is then unchanged.
     """
 
 def optimize_map_with_landmarks(

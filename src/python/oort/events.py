@@ -6,6 +6,7 @@ import contextlib
 import errno
 import json
 import os
+import stat
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from oort.errors import InputError
+from oort.inputs import quoted, read_text
 from oort.recording import Pose, Scan
 
 SCAN = "scan"
@@ -36,10 +38,8 @@ def read_events(path: str | Path) -> list[Event]:
     Raises InputError naming the file and the entry that is wrong.
     """
     try:
-        entries = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot read the events: {error.strerror}") from error
-    except ValueError as error:
+        entries = json.loads(read_text(Path(path)))
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not JSON: {error}; an events file is a list of t, call, args objects") from error
     if not isinstance(entries, list):
         raise InputError(f"{path}: an events file is a JSON list of objects with t, call and args")
@@ -49,10 +49,10 @@ def read_events(path: str | Path) -> list[Event]:
 def _event(path: str | Path, number: int, entry: Any) -> Event:
     where = f"{path}: event {number}"
     if not isinstance(entry, dict) or not {"t", "call"} <= entry.keys() <= {"t", "call", "args"}:
-        raise InputError(f'{where}: expected an object with "t", "call" and maybe "args", got {json.dumps(entry)}')
+        raise InputError(f'{where}: expected an object with "t", "call" and maybe "args", got {quoted(entry)}')
     t, call, args = entry["t"], entry["call"], entry.get("args", [])
     if isinstance(t, bool) or not isinstance(t, int | float) or not abs(t) <= sys.float_info.max:
-        raise InputError(f'{where}: "t" must be a finite number of seconds, got {json.dumps(t)}')
+        raise InputError(f'{where}: "t" must be a finite number of seconds, got {quoted(t)}')
     if not isinstance(call, str) or not isinstance(args, list):
         raise InputError(f'{where}: "call" must be a string and "args" a list')
     return Event(float(t), call, args)
@@ -77,7 +77,7 @@ def scan_of_entry(scan: Scan, args: Sequence[Any]) -> Scan | None:
         ends = None if sweep is None else (_pose(sweep[0]), _pose(sweep[1]))
         return replace(scan, odometry=_pose(odometry), sweep=ends)
     except (TypeError, ValueError, LookupError, OverflowError) as error:
-        raise InputError(f"the entry of the scan {scan.stamp} cannot be: {list(args[1:])!r}") from error
+        raise InputError(f"the entry of the scan {scan.stamp} cannot be: {quoted(list(args[1:]))}") from error
 
 
 def _pose(values: Sequence[float]) -> Pose:
@@ -97,10 +97,15 @@ class EventLog:
         try:
             if os.path.isfile(path):
                 os.replace(path, f"{path}.1")
-            self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o644)
+            flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC | os.O_NONBLOCK  # a pipe makes nobody wait
+            self._file = os.open(path, flags, 0o666)
+            if not stat.S_ISREG(os.fstat(self._file).st_mode):
+                os.close(self._file)
+                raise InputError(f"{path}: the events log cannot be a device or a pipe; give a file")
             os.write(self._file, b"[" + self._END)
-        except OSError as error:
-            raise InputError(f"{path}: the events log cannot be written: {error.strerror}") from error
+        except (OSError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else error
+            raise InputError(f"{path}: the events log cannot be written: {why}") from error
 
     def add(self, t: float, call: str, args: Sequence[Any]) -> None:
         """Adds an entry. Raises InputError if that fails; the file then ends with the entry before."""

@@ -15,6 +15,7 @@ from oort._core import Map, Parameters, Saved, ScanResult, normalise_map_path, s
 from oort.areas import Area
 from oort.diagnosis import Observer, Trouble, diagnose, loose_parts
 from oort.errors import StateError
+from oort.inputs import quoted
 from oort.locations import Locations, Pose
 from oort.mapper import Mapper
 from oort.naming import METHODS, Naming, session_method
@@ -129,13 +130,12 @@ class Session:
         Raises StateError for an unknown name, wrong arguments, or a call that the state does not allow.
         """
         if name not in self._calls:
-            raise StateError(f"no call {name!r}; the calls are: {', '.join(sorted(self._calls))}")
+            raise StateError(f"no call {quoted(name)}; the calls are: {', '.join(sorted(self._calls))}")
         try:
             return self._calls[name](*args)
         except (TypeError, ValueError, IndexError) as error:
-            raise StateError(
-                f"{name}: the arguments {list(args)!r} do not fit: {str(error).splitlines()[0]}"
-            ) from error
+            why = (str(error) or repr(error)).splitlines()[0][:200]
+            raise StateError(f"{name}: the arguments {quoted(list(args))} do not fit: {why}") from error
 
     def add_scan(self, scan: Scan) -> ScanResult | None:
         """Takes one scan with its odometry; None if the state is not mapping, or it joins the main laser's next."""
@@ -259,11 +259,13 @@ class Session:
 
     def stop(self) -> None:
         """Ends mapping with a last solve, and saves the map if there is a path. Places without a pose are given up."""
-        if self._state is not State.NOT_MAPPING:
-            self._mapper.finish()
-            self._locations.give_up_waiting()
-            self._state = State.NOT_MAPPING
-        self._write(Saved.MAP)
+        try:
+            if self._state is not State.NOT_MAPPING:
+                self._state = State.NOT_MAPPING
+                self._locations.give_up_waiting()
+                self._mapper.finish()
+        finally:
+            self._write(Saved.MAP)  # what there is, even where it cannot be solved
 
     def accept(self) -> None:
         """Keeps what the session made of the map that it went on with, for good: reject() has nothing to go back to."""
@@ -375,4 +377,9 @@ def _check_text(**values: object) -> None:
         if not isinstance(value, str):
             raise TypeError(f"{name} must be a string, got {value!r}")
         if "\0" in value:
-            raise StateError(f"{name} holds a NUL character: {value!r}; no path and no name can")
+            raise StateError(f"{name} holds a NUL character: {quoted(value)}; no path and no name can")
+        if name != "path" and not value.isprintable():
+            try:
+                value.encode()
+            except UnicodeEncodeError:
+                raise StateError(f"{name} is no text: {quoted(value)}") from None

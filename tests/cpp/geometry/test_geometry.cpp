@@ -135,6 +135,34 @@ TEST(PointCloud, AnyNumberOfBeamsAndNoNonsense) {
   EXPECT_THROW(to_point_cloud(scan), InputError);
 }
 
+TEST(PointCloud, NoLaserSeesFartherThanIndoors) {
+  LaserScan scan = scan_of({1.0F, 149.0F, 150.0F, 1e6F, 1e20F, -1e20F});
+  scan.angle_increment = 0.1;
+  scan.range_max = kInf;
+  const PointCloud cloud = to_point_cloud(scan);
+  EXPECT_EQ(count_returns(cloud), 2U);
+  for (const int k : {2, 3, 4}) {
+    EXPECT_EQ(cloud.points[k].x, kInf);
+    EXPECT_EQ(cloud.points[k].y, scan.angle_min + 0.1 * k);
+  }
+  EXPECT_TRUE(std::isnan(cloud.points[5].x));
+}
+
+TEST(PointCloud, BeamsSpreadOverATurnOrLess) {
+  for (const double increment : {0.0, 1e-300, 1e300, -1e300, 7.0}) {
+    LaserScan scan = scan_of({1.0F, 1.0F});
+    scan.angle_increment = increment;
+    EXPECT_THROW(to_point_cloud(scan), InputError) << increment;
+  }
+  LaserScan scan = scan_of({1.0F, 1.0F});
+  scan.angle_min = 1e300;
+  EXPECT_THROW(to_point_cloud(scan), InputError);
+  LaserScan many = scan_of({});
+  many.ranges.resize(1'000'001);
+  many.angle_increment = 1e-6;
+  EXPECT_THROW(to_point_cloud(many), InputError);
+}
+
 TEST(OdometryBuffer, InterpolatesAndKeepsOrder) {
   OdometryBuffer buffer;
   buffer.add(1.0, {0, 0, 3.0});

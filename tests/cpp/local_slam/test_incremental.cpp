@@ -210,6 +210,17 @@ TEST(LearnedOdometry, FollowsHowFarMatchesAreFromIt) {
   EXPECT_DOUBLE_EQ(learned(0.01, 1.0).rotation_factor(), 1.0);  // nothing is learned
 }
 
+TEST(LearnedOdometry, LearnsNothingFromAlmostNoMotion) {
+  for (const Pose2& tiny : {Pose2{0.0, 0.0, 1e-313}, Pose2{1e-170, 0.0, 0.0}, Pose2{1e-313, 1e-313, -5e-324}}) {
+    LearnedOdometry odometry(OdometryModel{0.05, 0.05, 0.05, 0.05, 0.01, 0.01}, 0.2);
+    for (int k = 0; k < 50; ++k) odometry.learn(tiny, {0.3, -0.2, 3.0});
+    const Pose2 corrected = odometry.corrected({1.0, 0.0, 1.0});
+    EXPECT_TRUE(is_finite(corrected));
+    EXPECT_NEAR(corrected.x, 1.0, 0.2);
+    EXPECT_NEAR(corrected.theta, 1.0, 0.2);
+  }
+}
+
 TEST(LearnedOdometry, FindsTheScalesOfWayAndTurn) {
   LearnedOdometry odometry({0.1, 0.05, 0.1, 0.15, 0.005, 0.005}, 0.2);
   const Pose2 straight{0.2, 0.0, 0.0},

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -159,7 +161,7 @@ bool write_and_die(const std::string& base, const Map& map, int steps, bool meta
   const pid_t child = ::fork();
   if (child == 0) {
     int left = steps;
-    FileSet files(base, [&] {
+    FileSet files(base, Directory::Use::kWrite, [&] {
       if (--left == 0) ::_exit(1);
     });
     files.write(metadata_only ? std::nullopt : std::optional(encode_map(map)), encode_metadata(map.locations));
@@ -306,6 +308,40 @@ TEST_F(Storage, SavingAndLoadingTakeTurns) {
   first.join();
   second.join();
   EXPECT_EQ(names(), whole_set_);
+}
+
+TEST_F(Storage, AFolderThatAnotherProgramHoldsIsToldOf) {
+  save_map(base_, make_map(4));
+  const int folder = ::open(folder_.path().c_str(), O_RDONLY | O_DIRECTORY);
+  const auto open_set = [&](Directory::Use use) { FileSet(base_, use, {}, std::chrono::milliseconds(30)).read(); };
+  ASSERT_EQ(::flock(folder, LOCK_SH), 0);
+  open_set(Directory::Use::kRead);
+  EXPECT_THROW(open_set(Directory::Use::kWrite), MapFileError);
+  ASSERT_EQ(::flock(folder, LOCK_EX), 0);
+  EXPECT_THROW(open_set(Directory::Use::kRead), MapFileError);
+  ::close(folder);
+  open_set(Directory::Use::kWrite);
+}
+
+TEST_F(Storage, WhoReadsBesideAnotherReaderTakesANewSetAsItLies) {
+  save_map(base_, make_map(4));
+  ASSERT_FALSE(write_and_die(base_, make_map(6), 7));  // in the middle of renaming
+  const int folder = ::open(folder_.path().c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(folder, LOCK_SH), 0);
+  const std::vector<std::string> before = names();
+  EXPECT_TRUE(same(load_map(base_), make_map(6)));
+  EXPECT_EQ(names(), before);
+  ::close(folder);
+  EXPECT_TRUE(same(load_map(base_), make_map(6)));
+  EXPECT_EQ(names(), whole_set_);
+}
+
+TEST_F(Storage, NoPathHoldsANul) {
+  const std::string precious = folder_ / "precious.txt";
+  testing::write_file(precious, "precious");
+  EXPECT_THROW(save_map(precious + std::string("\0", 1), make_map(4)), MapFileError);
+  EXPECT_THROW(load_map(precious + std::string("\0x", 2)), MapFileError);
+  EXPECT_EQ(testing::read_file(precious), "precious");
 }
 
 // ---- the map that Mayfield's Oort wrote ----

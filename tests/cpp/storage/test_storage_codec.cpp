@@ -297,6 +297,71 @@ TEST(Defect, FindsWhatMakesAMapUnusable) {
   finds("pose of loop result 0", [](Map& m) { m.loop_results[0].T_id_target.x = kNan; });
   finds("'dock/dock' refers to node 4", [](Map& m) { m.locations[0].node_id = 4; });
   finds("location 'dock/dock'", [](Map& m) { m.locations[0].T_node_location.x = kNan; });
+  finds("name holds a NUL", [](Map& m) { m.locations[0].id = std::string("do\0ck", 5); });
+  finds("name is longer", [](Map& m) { m.locations[0].name_space = std::string(5000, 'x'); });
+}
+
+TEST(Defect, FindsCovariancesThatCannotBeUsed) {
+  const auto defect_with = [](const std::function<void(Eigen::Matrix3d&)>& change, bool switchable) {
+    Map map = make_map();
+    change(switchable ? map.graph.switchable_edges[0].constraint.covariance : map.graph.edges[0].constraint.covariance);
+    return find_defect(map).value_or("nothing");
+  };
+  for (const bool switchable : {false, true}) {
+    const auto finds = [&](const std::string& words, const std::function<void(Eigen::Matrix3d&)>& change) {
+      EXPECT_NE(defect_with(change, switchable).find(words), std::string::npos) << defect_with(change, switchable);
+    };
+    finds("not symmetric", [](auto& c) { c(0, 1) += 0.01; });
+    finds("not positive definite", [](auto& c) { c(0, 1) = c(1, 0) = 1.0; });
+    finds("not positive definite", [](auto& c) { c.setZero(); });
+    finds("larger than any", [](auto& c) { c(0, 0) = 1e300; });
+    finds("smaller than any", [](auto& c) { c = 1e-40 * Eigen::Matrix3d::Identity(); });
+  }
+}
+
+TEST(Defect, FindsWhatIsOutOfReach) {
+  const auto finds = [](const std::string& words, const std::function<void(Map&)>& change) {
+    Map map = make_map();
+    change(map);
+    EXPECT_NE(find_defect(map).value_or("nothing").find(words), std::string::npos) << find_defect(map).value_or("-");
+  };
+  finds("pose of node 1", [](Map& m) { m.graph.nodes[1].pose.x = 1e17; });
+  finds("pose of node 1", [](Map& m) { m.graph.nodes[1].pose.theta = 1e17; });
+  finds("pose of edge 0", [](Map& m) { m.graph.edges[0].constraint.T_i_j.x = 1e9; });
+  finds("pose of edge 3", [](Map& m) { m.graph.switchable_edges[0].constraint.T_i_j.y = 1e9; });
+  finds("pose of incremental result 1", [](Map& m) { m.incremental_results[1].T_target_id.x = 1e9; });
+  finds("pose of loop result 0", [](Map& m) { m.loop_results[0].T_id_target.x = 1e9; });
+  finds("a return of cloud 2",
+        [](Map& m) { testing::edit_cloud(m.clouds, 2, [](PointCloud& c) { c.points[0].x = 1e6; }); });
+}
+
+TEST(Codec, AReturnThatNoLaserCanSeeIsNone) {
+  Map map = make_map();
+  testing::edit_cloud(map.clouds, 2, [](PointCloud& c) { c.points[0] = {3e5, 3e5, 1.0}; });
+  const Map read = decode_map(encode_map(map), "map");
+  EXPECT_FALSE(read.clouds[2].points[0].is_return());
+  EXPECT_TRUE(std::isinf(read.clouds[2].points[0].x));
+  EXPECT_NEAR(read.clouds[2].points[0].y, M_PI / 4.0, 1e-12);
+  EXPECT_FALSE(find_defect(read));
+}
+
+TEST(Error, TellsOfLongAndOddTextsInShort) {
+  const std::string text = InputError("a" + std::string(1'000'000, 'b') + "c").what();
+  EXPECT_LT(text.size(), 2000U);
+  EXPECT_EQ(text.front(), 'a');
+  EXPECT_EQ(text.back(), 'c');
+  EXPECT_STREQ(InputError(std::string("K\xC3\xBC"
+                                      "che\xFF\0!",
+                                      9))
+                   .what(),
+               "K\xC3\xBC"
+               "che?"
+               "?!");
+  EXPECT_STREQ(InputError("\xE2\x82\xAC \xED\xA0\x80 \xC0\x80").what(),
+               "\xE2\x82\xAC ?"
+               "?"
+               "? ?"
+               "?");
 }
 
 }  // namespace

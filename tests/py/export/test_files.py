@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from oort.errors import InputError, OortError
-from oort.export.files import decimal, floats, write_atomically
+from oort.export.files import decimal, write_atomically
+from oort.inputs import floats
 
 
 def test_a_write_replaces_the_file_and_leaves_nothing_behind(tmp_path: Path) -> None:

@@ -6,11 +6,15 @@
 
 namespace oort {
 
+/// What is quoted from outside may be of any length and no text: of a long message the ends are told, and bytes that
+/// are no UTF-8 become question marks.
+std::string to_message(const std::string& text);
+
 /// Root of the family: everything Oort throws because of its input or its environment. Each message says what is
 /// wrong, where, and what to do. Reaches Python as oort.OortError and its subclasses of the same names.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& what) : std::runtime_error(to_message(what)) {}
 };
 
 /// A parameter that is unknown, of the wrong type or out of its range.

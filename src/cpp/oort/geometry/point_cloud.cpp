@@ -7,8 +7,31 @@
 #include <limits>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/geometry/tuning.hpp"
 
 namespace oort {
+namespace {
+
+void check_fields(const LaserScan& scan) {
+  if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || std::isnan(scan.range_min) ||
+      std::isnan(scan.range_max)) {
+    throw InputError(
+        "laser scan: angle_min, angle_increment, range_min and range_max must be numbers; check the driver that fills "
+        "them in");
+  }
+  const auto beams = static_cast<double>(scan.ranges.size());
+  if (beams > GeometryTuning::kMaxBeams) {
+    throw InputError("laser scan: " + std::to_string(scan.ranges.size()) + " beams are more than any laser has");
+  }
+  const double step = std::abs(scan.angle_increment);
+  const bool spreads = step >= GeometryTuning::kMinAngleIncrement && beams * step <= GeometryTuning::kMaxFieldOfView;
+  if (std::abs(scan.angle_min) > GeometryTuning::kMaxFieldOfView || (beams > 1.0 && !spreads)) {
+    throw InputError("laser scan: " + std::to_string(scan.ranges.size()) + " beams from angle_min on by " +
+                     "angle_increment do not spread over a turn or less; check the driver that fills them in");
+  }
+}
+
+}  // namespace
 
 // Volatile, because GCC 12 drops a rounding to float32 and back where it vectorises the two coordinates (-O2 and up).
 double round_to_float32(double value) {
@@ -17,12 +40,7 @@ double round_to_float32(double value) {
 }
 
 PointCloud to_point_cloud(const LaserScan& scan) {
-  if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || std::isnan(scan.range_min) ||
-      std::isnan(scan.range_max)) {
-    throw InputError(
-        "laser scan: angle_min, angle_increment, range_min and range_max must be numbers; check the driver that fills "
-        "them in");
-  }
+  check_fields(scan);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   PointCloud cloud;
   cloud.time = scan.time;
@@ -30,8 +48,13 @@ PointCloud to_point_cloud(const LaserScan& scan) {
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
     const double bearing = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
-    if (!std::isfinite(range)) {  // -inf means "too close" (REP 117): as unknown as nan
-      cloud.points.push_back({range > 0.0 ? range : kNan, bearing, kNan});
+    if (range >= GeometryTuning::kMaxRange) {
+      cloud.points.push_back({std::numeric_limits<double>::infinity(), bearing, kNan});
+      continue;
+    }
+    if (range <= -GeometryTuning::kMaxRange ||
+        std::isnan(range)) {  // -inf means "too close" (REP 117): as unknown as nan
+      cloud.points.push_back({kNan, bearing, kNan});
       continue;
     }
     const bool is_return = range >= scan.range_min && range < scan.range_max;

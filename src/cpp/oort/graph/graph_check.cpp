@@ -9,6 +9,8 @@
 #include <numeric>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/graph/internal/residuals.hpp"
+#include "oort/graph/tuning.hpp"
 
 namespace oort {
 namespace {
@@ -51,6 +53,20 @@ void check_graph(const Graph& graph) {
                        ", not finite and at least 1");
     }
   }
+}
+
+std::optional<std::string> find_covariance_defect(const Eigen::Matrix3d& covariance) {
+  if (!covariance.allFinite()) return "is not finite";
+  if ((covariance.diagonal().array() < 0.0).any()) return "has a negative variance";
+  if (covariance.cwiseAbs().maxCoeff() > GraphTuning::kMaxVariance) return "is larger than any that was measured";
+  try {
+    const Eigen::Matrix3d whitening = whitening_matrix(covariance, Whitening::kCorrect);
+    if (whitening.cwiseAbs().maxCoeff() > GraphTuning::kMaxWeight) return "is smaller than any that was measured";
+  } catch (const InputError& error) {
+    const std::string text = error.what();  // "covariance is ..."
+    return text.substr(text.find(' ') + 1);
+  }
+  return std::nullopt;
 }
 
 std::vector<bool> find_anchors(const Graph& graph) {

@@ -54,6 +54,10 @@ struct GraphTuning {
   /// Cost of the edges that are always believed below which the poses follow from those edges alone.
   static constexpr double kNoCost = 1e-3;
 
+  // A covariance of a loaded map outside of these is damaged: numbers of the solver would over- or underflow.
+  static constexpr double kMaxVariance = 1e12;  ///< [m^2, rad^2]
+  static constexpr double kMaxWeight = 1e12;    ///< [1/m, 1/rad] entry of the whitening matrix
+
   /// [m] Lever at which an error of heading counts like one of position, where the least uncertain path is looked for.
   static constexpr double kHeadingLever = 1.0;
 

@@ -37,7 +37,7 @@ LocalSlam::LocalSlam(const Parameters& parameters)
     : parameters_(parameters), lasers_(parameters, {}), trajectory_(parameters) {}
 
 void LocalSlam::mount_sensor(const Pose2& T_base_sensor) {
-  if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
+  check_reach(T_base_sensor, "the sensor's pose on the base", "check the transform");
   if (last_) throw StateError("the sensor's place on the base cannot change while scans are being mapped");
   lasers_ = LaserRig(parameters_, T_base_sensor);
 }

@@ -94,11 +94,17 @@ bool KnownSpace::is_free(const Eigen::Vector2d& p_map) const {
   return probability(p_map) < LocalizationTuning::kFree;
 }
 
+/// Nothing is known beyond the grid's border: the walk ends there, however far the point is.
 bool KnownSpace::is_blocked(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double margin) const {
   const Eigen::Vector2d way = to - from;
   const double length = way.norm();
+  if (!std::isfinite(length)) return false;
   const double step = limits().resolution;
-  for (double at = step; at < length - margin; at += step) {
+  const Eigen::Vector2d low(limits().origin_x, limits().origin_y);
+  const Eigen::Vector2d high = low + step * Eigen::Vector2d(limits().width, limits().height);
+  const double farthest = (from.cwiseMax(high) - from.cwiseMin(low)).norm();
+  const double end = std::min(length - margin, farthest + step);
+  for (double at = step; at < end; at += step) {
     if (is_wall(from + way * (at / length))) return true;
   }
   return false;

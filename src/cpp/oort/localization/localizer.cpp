@@ -57,7 +57,7 @@ Localizer::Localizer(std::shared_ptr<const ReferenceMap> map, const Parameters& 
       relocalizer_(map_, parameters),
       views_(kept_parameters_.scan_distance, kept_parameters_.scan_angle,
              std::max(LocalizationTuning::kRememberedViews, static_cast<std::size_t>(kept_parameters_.max_scans))) {
-  if (!is_finite(T_base_sensor)) throw InputError("the sensor's pose on the base is not finite; check the transform");
+  check_reach(T_base_sensor, "the sensor's pose on the base", "check the transform");
 }
 
 void Localizer::start_at(const Pose2& T_map_sensor, const Eigen::Matrix3d& covariance) {

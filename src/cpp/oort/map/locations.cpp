@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/map/map_check.hpp"
+#include "oort/map/tuning.hpp"
 
 namespace oort {
 namespace {
@@ -12,6 +14,16 @@ namespace {
 auto find_location(std::vector<Location>& locations, const std::string& name_space, const std::string& id) {
   return std::find_if(locations.begin(), locations.end(),
                       [&](const Location& l) { return l.name_space == name_space && l.id == id; });
+}
+
+/// Those of map files are texts that end at a NUL.
+void check_name(const std::string& name_space, const std::string& id) {
+  for (const std::string& text : {name_space, id}) {
+    if (text.find('\0') != std::string::npos) throw InputError("location: a name holds a NUL character");
+    if (text.size() > MapTuning::kMaxNameLength) {
+      throw InputError("location: a name is longer than " + std::to_string(MapTuning::kMaxNameLength) + " bytes");
+    }
+  }
 }
 
 void put(std::vector<Location>& locations, Location location) {
@@ -34,7 +46,8 @@ std::uint64_t nearest_node(const Graph& graph, const Eigen::Vector2d& p_map) {
 }
 
 void create_location(Map& map, const std::string& name_space, const std::string& id, const Pose2& T_map_location) {
-  if (!is_finite(T_map_location)) throw InputError("location " + name_space + "/" + id + ": the pose is not finite");
+  check_name(name_space, id);
+  check_reach(T_map_location, "location " + name_space + "/" + id + ": the pose");
   const std::uint64_t node = nearest_node(map.graph, T_map_location.translation());
   put(map.locations, {name_space, id, node, between(map.graph.nodes[node].pose, T_map_location)});
 }
@@ -47,7 +60,10 @@ void create_points(Map& map, const std::vector<std::string>& name_spaces, const 
   if (points.empty()) return;
   Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& point : points) centroid += point / static_cast<double>(points.size());
-  if (!centroid.allFinite()) throw InputError("create_points: a point is not finite");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    check_name(name_spaces[i], ids[i]);
+    check_reach({points[i].x(), points[i].y(), 0.0}, "location " + name_spaces[i] + "/" + ids[i] + ": the point");
+  }
   const std::uint64_t node = nearest_node(map.graph, centroid);
   for (std::size_t i = 0; i < points.size(); ++i) {
     put(map.locations,

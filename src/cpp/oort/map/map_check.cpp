@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/geometry/tuning.hpp"
+#include "oort/graph/graph_check.hpp"
 #include "oort/map/tuning.hpp"
 
 namespace oort {
@@ -19,8 +22,35 @@ std::string number(std::uint64_t value) {
 }
 
 Defect check_covariance(const Eigen::Matrix3d& covariance, const std::string& owner) {
-  if (!covariance.allFinite()) return "the covariance of " + owner + " is not finite";
-  if ((covariance.diagonal().array() < 0.0).any()) return "the covariance of " + owner + " has a negative variance";
+  const auto defect = find_covariance_defect(covariance);
+  return defect ? Defect("the covariance of " + owner + " " + *defect) : std::nullopt;
+}
+
+/// Of a pose, or of how two lie to each other.
+Defect check_pose(const Pose2& pose, const std::string& owner) {
+  if (!is_finite(pose)) return "the pose of " + owner + " is not finite";
+  const double most = std::max({std::abs(pose.x), std::abs(pose.y), std::abs(pose.theta)});
+  if (most > 2.0 * MapTuning::kMaxCoordinate) return "the pose of " + owner + " is more than 100 km off";
+  return std::nullopt;
+}
+
+Defect check_size(const Map& map) {
+  const auto exceeds = [](std::uint64_t count, std::uint64_t most, const std::string& what) -> Defect {
+    if (count <= most) return std::nullopt;
+    return "it has " + number(count) + " " + what + ", and a map can hold " + number(most);
+  };
+  std::uint64_t points = 0;
+  for (const PointCloud& cloud : map.clouds) points += cloud.points.size();
+  for (const auto& [count, most, what] :
+       {std::tuple{map.graph.nodes.size(), MapTuning::kMaxNodes, "nodes"},
+        std::tuple{map.graph.edges.size(), MapTuning::kMaxEdges, "edges"},
+        std::tuple{map.graph.switchable_edges.size(), MapTuning::kMaxEdges, "switchable edges"},
+        std::tuple{map.incremental_results.size(), MapTuning::kMaxEdges, "incremental results"},
+        std::tuple{map.loop_results.size(), MapTuning::kMaxEdges, "loop results"},
+        std::tuple{map.locations.size(), MapTuning::kMaxLocations, "locations"},
+        std::tuple{points, MapTuning::kMaxPoints, "points"}}) {
+    if (auto defect = exceeds(count, most, what)) return defect;
+  }
   return std::nullopt;
 }
 
@@ -28,7 +58,7 @@ Defect check_nodes(const Map& map) {
   for (std::size_t k = 0; k < map.graph.nodes.size(); ++k) {
     const Node& node = map.graph.nodes[k];
     if (node.id != k) return "node " + number(k) + " has the id " + number(node.id);
-    if (!is_finite(node.pose)) return "the pose of node " + number(k) + " is not finite";
+    if (auto defect = check_pose(node.pose, "node " + number(k))) return defect;
   }
   return std::nullopt;
 }
@@ -44,7 +74,7 @@ Defect check_edge(const AnyEdge& edge, std::size_t node_count) {
     }
   }
   if (edge.i == edge.j) return name + " links node " + number(edge.i) + " to itself";
-  if (!is_finite(edge.constraint.T_i_j)) return "the pose of " + name + " is not finite";
+  if (auto defect = check_pose(edge.constraint.T_i_j, name)) return defect;
   if (!std::isfinite(edge.constraint.time)) return "the time of " + name + " is not finite";
   return check_covariance(edge.constraint.covariance, name);
 }
@@ -75,6 +105,9 @@ Defect check_clouds(const Map& map) {
       if (!std::isfinite(point.y) || (point.is_return() && !std::isfinite(point.x))) {
         return "a point of cloud " + number(k) + " is not finite though it counts as a return or a bearing";
       }
+      if (point.is_return() && std::hypot(point.x, point.y) > GeometryTuning::kMaxRange) {
+        return "a return of cloud " + number(k) + " is farther off than a laser can see";
+      }
     }
   }
   return std::nullopt;
@@ -89,7 +122,12 @@ Defect check_result(const Result& result, const std::string& name, std::size_t n
     }
   }
   if (!std::isfinite(result.inlier_ratio)) return "the inlier ratio of " + name + " is not finite";
-  return check_covariance(result.covariance, name);
+  // How well it was matched is told and kept, and no match rests on it: the published maps are loose with it.
+  if (!result.covariance.allFinite()) return "the covariance of " + name + " is not finite";
+  if ((result.covariance.diagonal().array() < 0.0).any()) {
+    return "the covariance of " + name + " has a negative variance";
+  }
+  return std::nullopt;
 }
 
 Defect check_results(const Map& map) {
@@ -98,13 +136,25 @@ Defect check_results(const Map& map) {
     const IncrementalResult& result = map.incremental_results[k];
     const std::string name = "incremental result " + number(k);
     if (auto defect = check_result(result, name, node_count)) return defect;
-    if (!is_finite(result.T_local_id) || !is_finite(result.T_target_id)) return "a pose of " + name + " is not finite";
+    for (const Pose2& pose : {result.T_local_id, result.T_target_id}) {
+      if (auto defect = check_pose(pose, name)) return defect;
+    }
   }
   for (std::size_t k = 0; k < map.loop_results.size(); ++k) {
     const LoopResult& result = map.loop_results[k];
     const std::string name = "loop result " + number(k);
     if (auto defect = check_result(result, name, node_count)) return defect;
-    if (!is_finite(result.T_id_target)) return "the pose of " + name + " is not finite";
+    if (auto defect = check_pose(result.T_id_target, name)) return defect;
+  }
+  return std::nullopt;
+}
+
+Defect check_name(const Location& location) {
+  for (const std::string& text : {location.name_space, location.id}) {
+    if (text.find('\0') != std::string::npos) return "a location's name holds a NUL character";
+    if (text.size() > MapTuning::kMaxNameLength) {
+      return "a location's name is longer than " + number(MapTuning::kMaxNameLength) + " bytes";
+    }
   }
   return std::nullopt;
 }
@@ -116,7 +166,8 @@ Defect check_locations(const Map& map) {
       return name + " refers to node " + number(location.node_id) + ", but there are " +
              number(map.graph.nodes.size()) + " nodes";
     }
-    if (!is_finite(location.T_node_location)) return "the pose of " + name + " is not finite";
+    if (auto defect = check_pose(location.T_node_location, name)) return defect;
+    if (auto defect = check_name(location)) return defect;
   }
   return std::nullopt;
 }
@@ -124,15 +175,16 @@ Defect check_locations(const Map& map) {
 }  // namespace
 
 Defect find_defect(const Map& map) {
-  for (const auto check : {check_nodes, check_edges, check_clouds, check_results, check_locations}) {
+  for (const auto check : {check_size, check_nodes, check_edges, check_clouds, check_results, check_locations}) {
     if (auto defect = check(map)) return defect;
   }
   return std::nullopt;
 }
 
 void check_reach(const Pose2& pose, const std::string& what, const std::string& advice) {
-  if (!is_finite(pose) || std::max(std::abs(pose.x), std::abs(pose.y)) > MapTuning::kMaxCoordinate) {
-    throw InputError(what + " is not finite or more than 100 km off; " + advice);
+  const double most = std::max({std::abs(pose.x), std::abs(pose.y), std::abs(pose.theta)});
+  if (!is_finite(pose) || most > MapTuning::kMaxCoordinate) {
+    throw InputError(what + " is not finite, or more than 16,000 turns or 100 km off; " + advice);
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
+#include <cstdint>
 
 namespace oort {
 
@@ -18,6 +20,14 @@ struct MapTuning {
 
   /// [m] Poses farther from the origin come from a broken input.
   static constexpr double kMaxCoordinate = 1e5;
+
+  // What a map may hold, so that a map file of it can be read again (kMaxWords of storage). At 360 beams a scan, and
+  // two nodes a metre, the points last for 130 km of new places.
+  static constexpr std::uint64_t kMaxNodes = 1'000'000;
+  static constexpr std::uint64_t kMaxEdges = 4'000'000;  ///< and of results, of each kind
+  static constexpr std::uint64_t kMaxPoints = 100'000'000;
+  static constexpr std::uint64_t kMaxLocations = 100'000;
+  static constexpr std::size_t kMaxNameLength = 4096;  ///< [bytes] of a place's namespace and id
 };
 
 }  // namespace oort

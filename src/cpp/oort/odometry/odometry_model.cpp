@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "oort/odometry/tuning.hpp"
 
@@ -57,12 +58,12 @@ void LearnedOdometry::learn(const Pose2& T_before_after, const Pose2& T_odometry
                        1.0 + OdometryTuning::kMaxScaleError);
   };
   const double way2 = T_before_after.translation().squaredNorm();
-  if (std::abs(T_before_after.theta) < OdometryTuning::kStraight && way2 > 0.0) {
+  if (std::abs(T_before_after.theta) < OdometryTuning::kStraight && way2 >= std::numeric_limits<double>::min()) {
     const double ratio = T_before_after.translation().dot(match.translation()) / way2;
     fit(way_scale_, ways_, OdometryTuning::kMaxTranslations, way2 / square(way_scale_),
         std::clamp(ratio, 1.0 - OdometryTuning::kMaxScaleError, 1.0 + OdometryTuning::kMaxScaleError));
   }
-  if (T_before_after.theta != 0.0) {
+  if (square(T_before_after.theta) >= std::numeric_limits<double>::min()) {  // else the ratio may be no number
     const double ratio = 1.0 + T_odometry_match.theta / T_before_after.theta;
     fit(turn_scale_, turns_, OdometryTuning::kMaxRotations, square(T_before_after.theta / turn_scale_), ratio);
   }

@@ -104,7 +104,7 @@ void declare_cartographer_matcher(const Section& v, CartographerMatcherParameter
   v(p.history_length, "history_length", {60, "scans", {2, 10000}},
     "Latest scans that make the matcher's local map: the map holds between half as many and as many.")
       .documented(30, "With insert_free_space: 150 scans of Intel without loops drift by 0.016 m instead of 0.041 m.");
-  v(p.resolution, "resolution", {0.05, "m", {0.005, 1.0}}, "Cell of the matcher's grid.");
+  v(p.resolution, "resolution", {0.05, "m", {0.01, 1.0}}, "Cell of the matcher's grid.");
   v(p.insert_free_space, "insert_free_space", false, "Whether cells that a beam crosses are updated as free.")
       .documented(true, "As history_length.");
   declare_hit_and_miss(v, p);
@@ -169,7 +169,7 @@ void declare_branch_and_bound_matcher(const Section& v, BranchAndBoundMatcherPar
          "Half width of the search.");
   search(p.fast_correlative_scan_matcher.angular_search_window, "angular_search_window", {0.524, "rad", {0.0, 3.15}},
          "Half width of the search in heading.");
-  search(p.fast_correlative_scan_matcher.branch_and_bound_depth, "branch_and_bound_depth", {7, "levels", {1, 16}},
+  search(p.fast_correlative_scan_matcher.branch_and_bound_depth, "branch_and_bound_depth", {7, "levels", {1, 12}},
          "Levels of precomputed grids.");
   declare_ceres(v.section("ceres_scan_matcher"), p.ceres_scan_matcher, {20.0, 10.0, 1.0, 0.125, 10});
   declare_lenient_match_filter(v.section("match_filter"), p.match_filter);

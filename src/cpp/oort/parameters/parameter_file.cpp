@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -20,6 +21,7 @@
 namespace oort {
 namespace {
 
+constexpr std::uintmax_t kMaxSize = 1 << 20;  // [bytes]
 constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
 
 std::string content_of(const std::string& path) {
@@ -27,6 +29,12 @@ std::string content_of(const std::string& path) {
     throw ParameterError("cannot read the parameters " + path + ": " + why);
   };
   if (path.find('\0') != std::string::npos) fail("a path has no character 0");
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) fail(std::strerror(error ? error.value() : ENOENT));
+  if (std::filesystem::is_directory(status)) fail(std::strerror(EISDIR));
+  if (!std::filesystem::is_regular_file(status)) fail("it is a device or a pipe; give a file");
+  if (std::filesystem::file_size(path, error) > kMaxSize || error) fail("it is larger than any file of parameters");
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail(std::strerror(errno));

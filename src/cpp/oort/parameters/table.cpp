@@ -12,6 +12,9 @@
 namespace oort {
 namespace {
 
+constexpr double kMaxSearchedCells = 50.0;
+constexpr std::size_t kMaxPathLength = 200;  // [bytes] of which a message tells
+
 std::vector<DeclaredParameter> declare(Parameters& p) {
   std::vector<DeclaredParameter> rows;
   const Section root(rows);
@@ -102,6 +105,10 @@ void check_parameters(const Parameters& parameters) {
   require(frsm.initial_search_range_xy <= frsm.max_search_range_xy &&
               frsm.initial_search_range_theta <= frsm.max_search_range_theta,
           "incremental_graph_builder.frsm_matcher", "initial search ranges must not be more than the largest");
+  const CartographerMatcherParameters& grid = parameters.incremental_graph_builder.cartographer_matcher;
+  require(grid.linear_search_window <= kMaxSearchedCells * grid.resolution,
+          "incremental_graph_builder.cartographer_matcher",
+          "linear_search_window must be at most 50 times resolution: all poses of a larger one do not fit in memory");
   const CandidateSearchParameters& search = parameters.loop_closure_graph_builder.candidate_search;
   require(search.closest_allowed_id_threshold_small <= search.closest_allowed_id_threshold_large,
           "loop_closure_graph_builder.candidate_search",
@@ -111,7 +118,8 @@ void check_parameters(const Parameters& parameters) {
           "dock_match_submap_size must be less than dock_submap_size");
 }
 
-std::string unknown_parameter(const std::string& path) {
+std::string unknown_parameter(const std::string& whole_path) {
+  const std::string path = whole_path.substr(0, kMaxPathLength);
   std::set<std::string> known;
   for (const ParameterEntry& entry : parameter_table()) {
     known.insert(entry.path);

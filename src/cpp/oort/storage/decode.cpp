@@ -5,10 +5,14 @@
 #include <capnp/serialize-packed.h>
 #include <kj/io.h>
 
+#include <cmath>
+#include <limits>
 #include <new>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/geometry/tuning.hpp"
 #include "oort/storage/internal/codec.hpp"
+#include "oort/storage/tuning.hpp"
 #include "oort_map.capnp.h"
 
 namespace oort {
@@ -60,13 +64,21 @@ Graph read(capnp::Graph2d::Reader in) {
   return graph;
 }
 
+/// Maps of before readings had a limit may hold returns that no laser can see: as to_point_cloud() has them now.
+Point2 within_reach(const Point2& point) {
+  const bool is_far = std::hypot(point.x, point.y) > GeometryTuning::kMaxRange;
+  if (!point.is_return() || !std::isfinite(point.x) || !std::isfinite(point.y) || !is_far) return point;
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  return {std::numeric_limits<double>::infinity(), std::atan2(point.y, point.x), kNan};
+}
+
 PointCloud read(capnp::PointCloud2d::Reader in) {
   PointCloud cloud;
   cloud.id = in.getId();
   cloud.time = in.getTime();
   const auto points = in.getPoints();
   cloud.points.reserve(points.size());
-  for (const auto point : points) cloud.points.push_back({point.getX(), point.getY(), point.getZ()});
+  for (const auto point : points) cloud.points.push_back(within_reach({point.getX(), point.getY(), point.getZ()}));
   return cloud;
 }
 
@@ -91,9 +103,9 @@ void read_sidecar(capnp::SidecarDb::Reader in, Map& map) {
 
 /// How many words a packed file unpacks to. It can hold a thousand times its size in zeros: what no map is, is refused.
 std::size_t unpacked_words(kj::ArrayPtr<const kj::byte> input) {
-  constexpr std::size_t kMaxWords = std::size_t{1} << 27U;  // 1 GiB, some 250,000 clouds of 180 beams
   const std::size_t count = ::capnp::computeUnpackedSizeInWords(input);
-  if (count == 0 || count > kMaxWords) {
+  const std::size_t plausible = StorageTuning::kMaxPacking * input.size() / sizeof(::capnp::word) + 4096;
+  if (count == 0 || count > StorageTuning::kMaxWords || count > plausible) {
     throw MapFileError("it unpacks to " + std::to_string(count) + " words, which is no map's size");
   }
   return count;

@@ -33,7 +33,9 @@ SetContent read_single_file(const std::string& path, const LoadOptions& options)
     throw MapFileError(path + " has no checksum file beside it; if you trust it, " + kLoadUnchecked);
   }
   const std::filesystem::path absolute = std::filesystem::absolute(path);
-  return {Directory(absolute.parent_path().string()).read(absolute.filename().string()).value_or(""), std::nullopt};
+  return {
+      Directory(absolute.parent_path().string(), Directory::Use::kRead).read(absolute.filename().string()).value_or(""),
+      std::nullopt};
 }
 
 SetContent read_set(FileSet& files, const LoadOptions& options) {
@@ -83,21 +85,23 @@ bool fits_on_disk(FileSet& files, const Map& map) {
 Map load_map(const std::string& path, const LoadOptions& options) {
   const std::string base = normalise_map_path(path);
   if (is_single_file(path, base)) return decode(read_single_file(path, options), path, path);
-  FileSet files(base);
+  FileSet files(base, Directory::Use::kRead);
   return decode(read_set(files, options), files.map_path(), files.metadata_path());
 }
 
 MapFormat read_map_format(const std::string& path, const LoadOptions& options) {
   const std::string base = normalise_map_path(path);
   if (is_single_file(path, base)) return decode_format(read_single_file(path, options).map, path);
-  FileSet files(base);
+  FileSet files(base, Directory::Use::kRead);
   return decode_format(read_set(files, options).map, files.map_path());
 }
 
 void save_map(const std::string& path, const Map& map, const SaveOptions& options) {
   const std::string base = normalise_map_path(path);
   require_sound(map, base);
-  FileSet(base).write(encode_map(map, options.as_original), encode_metadata(map.locations, options.as_original));
+  const std::string content = encode_map(map, options.as_original);
+  const std::string metadata = encode_metadata(map.locations, options.as_original);
+  FileSet(base).write(content, metadata);  // the folder is locked no longer than it takes to write
 }
 
 Saved save_metadata(const std::string& path, const Map& map) {

@@ -50,6 +50,9 @@ std::string resolve(const std::string& path) {
 
 std::string normalise_map_path(const std::string& path) {
   if (path.empty()) throw MapFileError("the map's path is empty; give the path of a map, as in /home/robot/maps/home");
+  if (path.find('\0') != std::string::npos) {
+    throw MapFileError("the map's path holds a NUL character, which no path can; take it out");
+  }
   try {
     return resolve(path);
   } catch (const fs::filesystem_error& error) {

@@ -7,12 +7,10 @@
 
 import argparse
 import json
-import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from oort.cli.tool import add_checksum_argument
-from oort.errors import OortError
+from oort.cli.tool import add_checksum_argument, run_tool
 from oort.evaluation.ground_truth import RelationLimits, autogenerate_relations, write_relations
 from oort.evaluation.trajectories import AteResult, RelationsResult, evaluate_ate, evaluate_relations
 from oort.export import read_tum
@@ -119,13 +117,12 @@ def _compare(arguments: argparse.Namespace) -> RelationsResult | AteResult:
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     arguments = _parser().parse_args(argv)
-    try:
-        if arguments.command == "autogenerate":
-            print(_autogenerate(arguments))
-            return 0
-        result = _compare(arguments)
-    except OortError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    print(json.dumps(asdict(result), indent=2) if arguments.json else _format(result))
-    return 0
+    return run_tool("oort evaluate", lambda: _run(arguments), arguments.reference)
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    if arguments.command == "autogenerate":
+        print(_autogenerate(arguments))
+        return
+    result = _compare(arguments)
+    print(json.dumps(asdict(result), indent=2, allow_nan=False) if arguments.json else _format(result))

@@ -4,6 +4,7 @@
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,6 +21,8 @@ from oort.parameters import read_parameters
 from oort.recording import Recording
 from oort.report.replay_report import format_table, format_troubles
 from oort.saved_maps import open_map
+
+_ROOM_FOR_ENDINGS = len(".map_meta_capnp.new")  # [bytes]
 
 
 def replay_to_folder(
@@ -49,6 +52,8 @@ def replay_to_folder(
         raise InputError(
             f"{map_folder} is no folder, so the map cannot be saved there; make it, or choose another place"
         )
+    folder.mkdir(parents=True, exist_ok=True)
+    check_name(map_path)
     if not options.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
@@ -69,6 +74,13 @@ def replay_to_folder(
     if results.failed:
         raise OortError(f"{'; '.join(results.failed)}. Written all the same: {', '.join(results.written) or 'nothing'}")
     return [trouble["code"] for trouble in results.report["troubles"]]
+
+
+def check_name(base: str) -> None:
+    """Raises InputError for a map's path whose files cannot be named so, now rather than after the drive."""
+    name = os.path.basename(normalise_map_path(base))
+    if len(os.fsencode(name)) + _ROOM_FOR_ENDINGS > 255:
+        raise InputError(f"the map's name {name[:40]}... is too long for a file's name; give a shorter one")
 
 
 def _parser() -> argparse.ArgumentParser:

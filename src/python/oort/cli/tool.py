@@ -3,6 +3,7 @@
 """What the command line tools have in common: arguments that several take, and how each ends."""
 
 import argparse
+import io
 import math
 import os
 import re
@@ -16,28 +17,50 @@ from oort.export.files import decimal
 UNCERTAIN = 3
 """The exit status of ``--strict`` where most of a drive is uncertain."""
 
+_LONGEST = 2000  # characters of a message
+_DEBUG = "OORT_DEBUG"
+"""The environment's variable that lets faults of Oort's own through with their traceback."""
 _PLAIN = re.compile(r"-\d+|-\d*\.\d+")
 """The negative numbers that argparse does not take for options."""
 
 
 def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int:
-    """Runs a tool; the exit status is what it returns, 0 for None, or 2 for an error and 130 for Ctrl-C.
-
-    None of them is told with a traceback.
+    """Runs a tool; the exit status is what it returns, 0 for None, 2 for an error, 130 for Ctrl-C, 1 for a fault of
+    Oort's own; none of them is told with a traceback.
 
     ``reading`` is the file that an error of the operating system is about if it names none.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # of names that the terminal cannot show
     try:
-        return run() or 0
-    except OortError as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"{name}: {error.filename or reading}: {error.strerror}", file=sys.stderr)
+        status = run()
+        sys.stdout.flush()
+    except BrokenPipeError:  # who reads has seen enough, as with head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 128 + signal.SIGPIPE
+    except (OortError, OSError, MemoryError) as error:
+        print(f"{name}: {_told(error, reading)}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print(f"{name}: interrupted", file=sys.stderr)
         return 128 + signal.SIGINT
+    except Exception as error:
+        if os.environ.get(_DEBUG):
+            raise
+        why = f"{type(error).__name__}: {_told(error, reading)}"
+        print(
+            f"{name}: this is a fault of Oort's ({why}); please report it, with what {_DEBUG}=1 shows", file=sys.stderr
+        )
+        return 1
+    return status or 0
+
+
+def _told(error: Exception, reading: str) -> str:
+    if isinstance(error, MemoryError):
+        return f"{reading}: it takes more memory than there is"
+    text = f"{error.filename or reading}: {error.strerror}" if isinstance(error, OSError) else str(error)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST // 2]} [...] {text[-_LONGEST // 2 :]}"
 
 
 def add_pose_argument(parser: argparse.ArgumentParser, name: str, meaning: str) -> None:

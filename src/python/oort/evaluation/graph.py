@@ -13,7 +13,7 @@ from oort._core import AGREEMENT_CHI2, SWITCH_ON, OptimizerOptions, OptimizerSum
 from oort.errors import InputError
 from oort.evaluation.trajectories import alignment
 from oort.export import PoseGraph, read_g2o
-from oort.export.files import floats, read_text
+from oort.inputs import floats, read_text
 from oort.poses import between, compose, wrap_angle
 
 METHODS = {

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oort.errors import InputError
-from oort.export.files import floats, read_text
 from oort.export.tum import Trajectory
+from oort.inputs import floats, read_text
 from oort.poses import between, compose, wrap_angle
 
 _ROUNDED = 1.001e-4  # [s] between a time of a relation that was rounded and the pose's

@@ -4,7 +4,8 @@
 
 import math
 import os
-import threading
+import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -13,35 +14,54 @@ from oort.errors import InputError, OortError
 
 
 def write_atomically(path: Path, data: bytes) -> None:
-    """Writes a file so that at every instant it is the old one or the new one. Raises OortError if it cannot."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}.tmp")
+    """Writes a file so that at every instant it is the old one or the new one. Raises OortError if it cannot.
+
+    What a link points to is written. A device or a pipe stays what it is, and is written to.
+    """
     try:
-        try:
-            with temporary.open("wb") as stream:
-                stream.write(data)
-                stream.flush()
-                os.fsync(stream.fileno())
-            os.replace(temporary, path)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
-        directory = os.open(path.parent, os.O_RDONLY)
-        try:
-            os.fsync(directory)  # the new name, too, must outlive a power cut
-        finally:
-            os.close(directory)
-    except OSError as error:
-        raise OortError(f"{path} cannot be written: {error.strerror}; check the directory and the free space") from None
+        path = Path(os.path.realpath(path))
+        if path.exists() and not path.is_file() and not path.is_dir():
+            _write_through(path, data)
+        else:
+            _replace(path, data)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        why = error.strerror if isinstance(error, OSError) else error
+        raise OortError(f"{path} cannot be written: {why}; check the directory and the free space") from None
 
 
-def read_text(path: Path) -> str:
-    """The text of a file. Raises InputError if it is missing, unreadable or not text."""
+def _replace(path: Path, data: bytes) -> None:
+    number, temporary = tempfile.mkstemp(prefix=f".{path.name[:64]}.", suffix=".tmp", dir=path.parent)
     try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}; check the path") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not a text file") from None
+        with open(number, "wb") as stream:
+            os.fchmod(stream.fileno(), path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask())
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    directory = os.open(path.parent, os.O_RDONLY)
+    try:
+        os.fsync(directory)  # the new name, too, must outlive a power cut
+    finally:
+        os.close(directory)
+
+
+def _write_through(path: Path, data: bytes) -> None:
+    number = os.open(path, os.O_WRONLY | os.O_NONBLOCK)  # a pipe that nobody reads is an error
+    os.set_blocking(number, True)
+    with open(number, "wb") as stream:
+        stream.write(data)
+
+
+def _umask() -> int:
+    """As the kernel tells it: to ask by os.umask() would set it for a moment, for other threads, too."""
+    with suppress(OSError), open("/proc/self/status", encoding="ascii", errors="replace") as status:
+        for line in status:
+            if line.startswith("Umask:"):
+                return int(line.split()[1], 8)
+    return 0o022
 
 
 def decimal(value: float) -> str:
@@ -52,14 +72,3 @@ def decimal(value: float) -> str:
     if not math.isfinite(value):
         raise InputError(f"{value} cannot be exported: every number must be finite")
     return np.format_float_positional(float(value) + 0.0, unique=True, trim="0")  # + 0.0 makes -0.0 plain
-
-
-def floats(fields: list[str], where: str) -> list[float]:
-    """Finite numbers from the fields of a text line. Raises InputError, naming the place, for anything else."""
-    try:
-        values = [float(field) for field in fields]
-    except ValueError:
-        values = [math.nan]
-    if not all(map(math.isfinite, values)):
-        raise InputError(f"{where}: expected finite numbers, not {' '.join(fields)!r}; the file is damaged")
-    return values

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oort.errors import InputError
-from oort.export.files import decimal, floats, read_text, write_atomically
+from oort.export.files import decimal, write_atomically
+from oort.inputs import floats, quoted, read_text
 
 _UPPER = np.triu_indices(3)
 _TORO_UPPER = ([0, 0, 1, 2, 0, 1], [0, 1, 1, 2, 2, 2])  # the order in which TORO writes the information
@@ -121,7 +122,7 @@ def _no_vertices(path: Path, others: Counter[str], edges: int) -> str:
 def _ids(fields: list[str], where: str) -> list[int]:
     """Ids of vertices. Raises InputError, naming the place, for anything that is no whole number of 64 bits."""
     if not all(len(field) < 20 and field.removeprefix("-").isdecimal() and abs(int(field)) < 2**63 for field in fields):
-        raise InputError(f"{where}: ids of vertices are whole numbers, not {' '.join(fields)!r}")
+        raise InputError(f"{where}: ids of vertices are whole numbers, not {quoted(' '.join(fields))}")
     return [int(field) for field in fields]
 
 

@@ -17,7 +17,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from oort.errors import InputError
-from oort.export.files import decimal, floats, read_text, write_atomically
+from oort.export.files import decimal, write_atomically
+from oort.inputs import check_regular, floats, quoted, read_text
 from oort.recording.types import Pose
 
 FREE, OCCUPIED, UNKNOWN = 254, 0, 205
@@ -93,15 +94,16 @@ def read_map_server(path: str | os.PathLike[str]) -> GridMap:
         mode, negate = entries.get("mode", "trinary"), bool(entries["negate"])
         numbers = [entries["resolution"], *entries["origin"], entries["occupied_thresh"], entries["free_thresh"]]
         resolution, x, y, theta, occupied, free = floats([str(number) for number in numbers], str(path))
-    except (YAMLError, KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(f"{path} is no map description as map_server has it: {error!r}") from None
+    except (YAMLError, KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
+        raise InputError(f"{path} is no map description as map_server has it: {quoted(error)}") from None
     if mode != "trinary":
         raise InputError(f"{path}: only maps of the mode trinary can be read, not {mode}")
     try:
+        check_regular(image)
         with Image.open(image) as picture:
             grey = np.asarray(picture.convert("L"), dtype=np.float64)
-    except OSError as error:
-        raise InputError(f"{image}, the picture of {path}, cannot be read: {error}") from None
+    except (OSError, ValueError, SyntaxError, MemoryError, Image.DecompressionBombError) as error:  # as Pillow has it
+        raise InputError(f"{image}, the picture of {path}, cannot be read: {quoted(str(error))}") from None
     occupancy = (grey if negate else 255.0 - grey) / 255.0
     cells = np.full(grey.shape, -1, dtype=np.int8)
     cells[occupancy > occupied] = 100

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from oort.errors import InputError
-from oort.export.files import decimal, floats, read_text, write_atomically
+from oort.export.files import decimal, write_atomically
+from oort.inputs import floats, read_text
 from oort.poses import wrap_angle
 
 

@@ -19,6 +19,7 @@ PATIENCE = 10.0
 PATIENCE_BEFORE_CALL = 2.0
 """[s] that scans wait on when a call has come that wants its turn after them"""
 
+_ASKED = 8  # scans that are not ready, after which the others wait for their turn
 
 UNUSABLE = "unusable"
 """The reason of scans that cannot be mapped for whatever else is wrong with them."""
@@ -64,6 +65,11 @@ class ScanItem:
                 self.refuse(str(error))
             except Exception as error:  # whatever is wrong with one scan, the others go on
                 self.refuse(UNUSABLE, str(error) or repr(error))
+        return self.is_settled
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether it is known what becomes of the scan."""
         return self.scan is not None or bool(self.refused)
 
     def refuse(self, reason: str, why: str = "") -> None:
@@ -99,6 +105,7 @@ class Inbox:
         self._changed = threading.Condition()
         self._items: deque[ScanItem | CallItem] = deque()
         self._unresolved: list[ScanItem] = []
+        self._turn = 0
         self._calls: deque[CallItem] = deque()
         self._closed: Exception | None = None
 
@@ -132,8 +139,20 @@ class Inbox:
     def poke(self) -> None:
         """Says that odometry came: scans that waited for it may be ready."""
         with self._changed:
-            if self._unresolved:
-                self._unresolved = [item for item in self._unresolved if not item.try_to_resolve()]
+            if not self._unresolved:
+                return
+            count = len(self._unresolved)
+            # Scans are ready in the order in which they came, with few exceptions. Those are found in turns: if all
+            # that wait were asked each time, many of them would cost more time than there is.
+            self._turn = (self._turn + _ASKED) % count
+            for items in (self._unresolved, self._unresolved[self._turn :]):
+                failures = 0
+                for item in items:
+                    failures += not item.try_to_resolve()
+                    if failures == _ASKED:
+                        break
+            self._unresolved = [item for item in self._unresolved if not item.is_settled]
+            if len(self._unresolved) < count:
                 self._changed.notify()
 
     def wake(self) -> None:

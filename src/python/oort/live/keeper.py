@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """When the map of a live session is saved, so that little is lost whenever the node ends."""
 
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
 
 from oort._core import Map, Saved
 from oort.errors import MapFileError
+from oort.live.claim import Claim
 from oort.live.listener import Listener
 from oort.live.paths import make_room, set_aside
 from oort.live.saver import Saver
@@ -28,6 +30,8 @@ class Keeper:
         self._unsaved = False  # the map, not only its places; also set by the saving thread
         self._soon = False
         self._next = float("-inf")  # by the clock
+        self._next_by_wall = float("-inf")  # a robot's clock may stand still
+        self._claim: Claim | None = None
 
     # ---- hooks of Session ----
 
@@ -35,6 +39,11 @@ class Keeper:
         """Writes a snapshot beside the mapping."""
         if what is Saved.MAP:
             self._unsaved = False
+        try:
+            self._claim_path(path)
+        except MapFileError as error:
+            self._unsaved = self._unsaved or what is Saved.MAP
+            return self.saver.fail(error)
         return self.saver.save(path, map_, what)
 
     def prepare(self, call: str, path: str) -> None:
@@ -42,9 +51,23 @@ class Keeper:
         call = self._naming(call)
         self.saver.wait()
         make_room(call, path)
+        self._claim_path(path)
         copy = set_aside(call, path)
         if copy:
             self._listener.note(f"{call}: there was another map at {path}; it is kept as {copy}")
+
+    def close(self) -> None:
+        """Ends after what was asked for."""
+        self.saver.close()
+        if self._claim is not None:
+            self._claim.release()
+
+    def _claim_path(self, path: str) -> None:
+        if self._claim is None or not self._claim.is_for(path):
+            claim = Claim(path)
+            if self._claim is not None:
+                self._claim.release()
+            self._claim = claim
 
     # ---- what happens to the map ----
 
@@ -57,8 +80,11 @@ class Keeper:
         self._soon = True
 
     def forget(self) -> None:
-        """The map was replaced or dropped."""
+        """The map was replaced or dropped, and others may save where it was."""
         self._unsaved = False
+        if self._claim is not None:
+            self._claim.release()
+            self._claim = None
 
     # ---- saving ----
 
@@ -66,10 +92,10 @@ class Keeper:
         """Saves if it is time to; what failed is tried again then. While paused all rests."""
         if not self._unsaved or session.state is State.PAUSED or not self.saver.idle or not _can_be_saved(session):
             return
-        now = self._clock()
+        now, wall = self._clock(), time.monotonic()
         was_set_back = now < self._next - AUTOSAVE_INTERVAL
-        if now >= self._next or was_set_back or self._soon:
-            self._next = now + AUTOSAVE_INTERVAL
+        if now >= self._next or wall >= self._next_by_wall or was_set_back or self._soon:
+            self._next, self._next_by_wall = now + AUTOSAVE_INTERVAL, wall + AUTOSAVE_INTERVAL
             self._soon = False
             session.save()
 

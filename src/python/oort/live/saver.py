@@ -7,6 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 
 from oort._core import Map, Saved
+from oort.errors import MapFileError
 from oort.session import save
 
 NAMES = {Saved.MAP: "map", Saved.METADATA: "meta"}
@@ -47,6 +48,14 @@ class Saver:
         """Writes a snapshot when those before it are written; the result, or MapFileError."""
         self._last = self._thread.submit(self._save, path, map_, what)
         return self._last
+
+    def fail(self, error: MapFileError) -> "Future[Saved]":
+        """A save that cannot even begin."""
+        self.error = str(error)
+        self._tell_failed(self.error)
+        failed: Future[Saved] = Future()
+        failed.set_exception(error)
+        return failed
 
     def close(self) -> None:
         """Ends the thread after what was asked for."""

@@ -181,7 +181,7 @@ class LiveSession:
         self.inbox.wake()
         self._worker.join()
         self.inbox.close(StateError("Oort is being shut down"))
-        self.keeper.saver.close()
+        self.keeper.close()
         self.gallery.close()
 
     # ---- the mapping thread ----

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from oort.errors import OortError
 from oort.export.files import write_atomically
+from oort.inputs import floats, quoted, read_text
 from oort.node.logs import log, once
 from oort.recording import Pose
 
@@ -22,11 +23,14 @@ class LastPose:
     def read(self) -> Pose | None:
         """None if there is none that can be used; a file that cannot be read is warned of."""
         try:
-            x, y, theta = map(float, json.loads(self.path.read_text(encoding="utf-8"))["T_map_sensor"])
-        except FileNotFoundError:
-            return None
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            log.warning("%s cannot be used: %s", self.path, error)
+            if not self.path.exists():
+                return None
+            pose = json.loads(read_text(self.path))["T_map_sensor"]
+            if not isinstance(pose, list):
+                raise TypeError(f"{quoted(pose)} is no pose")
+            x, y, theta = floats([repr(float(value)) for value in pose], str(self.path))
+        except (OortError, OSError, ValueError, LookupError, TypeError, OverflowError, RecursionError) as error:
+            log.warning("%s cannot be used: %s", self.path, quoted(str(error)))
             return None
         return x, y, theta
 

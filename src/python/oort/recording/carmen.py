@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oort.errors import InputError
+from oort.inputs import plain_number, quoted
 from oort.poses import between
 from oort.recording.limits import ScanLimits
 from oort.recording.packed import DAMAGED, PACKED
@@ -23,6 +24,8 @@ from oort.recording.types import Pose, Recording, Scan
 _FLASER_MAX_RANGE = 80.0  # [m]; these lasers report 81.83 and 81.91 for no return
 _SAMPLE = 400  # scans that are looked at more closely, spread over the log
 _MOUNT_TOLERANCE = (0.02, 0.02)  # [m], [rad]: logs are written with as few as two decimals
+_LONGEST_LINE, _LONGEST = 16 << 20, 4 << 30  # [bytes]
+_LONGEST_COUNT = 9  # digits
 _CUT = "The log is cut short here: copy it again, or remove this last line."
 
 
@@ -110,7 +113,15 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
     number = 0
     try:
         with _open(path) as stream:
-            for number, line in enumerate(stream, 1):
+            size = 0
+            while line := stream.readline(_LONGEST_LINE + 1):
+                number += 1
+                size += len(line)
+                if len(line) > _LONGEST_LINE or size > _LONGEST:
+                    raise InputError(
+                        f"{path}: line {number} ends beyond what a CARMEN log can hold, {_LONGEST_LINE >> 20} MB a "
+                        f"line and {_LONGEST >> 30} GB in all (unpacked); is it one?"
+                    )
                 yield number, line.decode("ascii", errors="replace")
     except EOFError:
         raise InputError(f"{path} is cut short: its compressed data end after line {number}; copy it again") from None
@@ -192,8 +203,8 @@ _PARSERS: dict[str, Callable[[list[str]], _Reading]] = {
 def _count(fields: list[str], index: int) -> int:
     if index >= len(fields):
         raise _MalformedError(f"has only {len(fields)} fields")
-    if not fields[index].isdecimal():
-        raise _MalformedError(f"has {fields[index]!r} where a number of readings belongs")
+    if not fields[index].isdecimal() or len(fields[index]) > _LONGEST_COUNT:
+        raise _MalformedError(f"has {quoted(fields[index])} where a number of readings belongs")
     return int(fields[index])
 
 
@@ -204,17 +215,18 @@ def _expect(fields: list[str], number: int, what: str) -> None:
 
 def _numbers(fields: list[str]) -> list[float]:
     try:
-        values = [float(field) for field in fields]
-    except ValueError as error:
-        raise _MalformedError(f"has a field that is no number ({error})") from None
+        values = [plain_number(field) for field in fields]
+    except ValueError:
+        raise _MalformedError(f"has a field that is no number: {quoted(' '.join(fields))}") from None
     if not all(map(math.isfinite, values)):
-        raise _MalformedError(f"has a time, pose or angle that is not finite: {' '.join(fields)}")
+        raise _MalformedError(f"has a time, pose or angle that is not finite: {quoted(' '.join(fields))}")
     return values
 
 
 def _ranges(fields: list[str]) -> NDArray[np.float32]:
     try:
-        return np.array([float(field) for field in fields], dtype=np.float32)
+        with np.errstate(over="ignore"):  # a reading of 1e300 m is as good as an infinite one
+            return np.array([plain_number(field) for field in fields], dtype=np.float32)
     except ValueError as error:
         raise _MalformedError(f"has a reading that is no number ({error})") from None
 

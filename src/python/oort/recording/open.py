@@ -10,6 +10,7 @@ from pathlib import Path
 
 from oort._core import Parameters
 from oort.errors import InputError, ParameterError
+from oort.inputs import check_regular
 from oort.recording.bag import read_bag
 from oort.recording.carmen import read_carmen
 from oort.recording.container import BAG_MAGIC, find_container
@@ -115,6 +116,7 @@ def recording_name(path: Path) -> str:
 
 def _check_readable(path: Path) -> None:
     """Raises InputError for what is neither a bag nor may be a CARMEN log."""
+    check_regular(path)
     if path.is_dir():
         return
     try:

@@ -112,11 +112,18 @@ class Recording:
         return self.source()
 
 
+_MOST_BEAMS = 100_000  # the finest lasers have some 15,000
+
+
 def _row_of(ranges: ArrayLike) -> NDArray[np.float32]:
     try:
         row = np.array(ranges, dtype=np.float32)
     except (TypeError, ValueError) as error:
         raise InputError(f"LaserScan: the ranges must be numbers [m]: {error}") from None
+    if row.size > _MOST_BEAMS:
+        raise InputError(
+            f"LaserScan: {row.size} beams are more than any laser has, and more than can be matched in time"
+        )
     if row.ndim != 1:
         raise InputError(f"LaserScan: the ranges must be one row of numbers, not of shape {row.shape}")
     return row

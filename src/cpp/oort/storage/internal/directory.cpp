@@ -7,10 +7,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <thread>
 
 #include "oort/geometry/errors.hpp"
+#include "oort/storage/tuning.hpp"
 
 namespace oort {
 namespace {
@@ -45,10 +49,15 @@ class File {
 
 bool write_all(int fd, const std::string& content) {
   std::size_t done = 0;
-  while (done < content.size()) {
+  for (int retries = 0; done < content.size();) {
     const ssize_t count = ::write(fd, content.data() + done, content.size() - done);
-    if (count < 0 && errno != EINTR) return false;
-    if (count > 0) done += static_cast<std::size_t>(count);
+    if (count > 0) {
+      done += static_cast<std::size_t>(count);
+      retries = 0;
+    } else if ((count < 0 && errno != EINTR) || ++retries > StorageTuning::kMaxRetries) {
+      if (count == 0) errno = EIO;
+      return false;
+    }
   }
   return true;
 }
@@ -56,11 +65,15 @@ bool write_all(int fd, const std::string& content) {
 bool read_all(int fd, std::size_t size, std::string& content) {
   content.resize(size);
   std::size_t done = 0;
-  while (done < size) {
+  for (int retries = 0; done < size;) {
     const ssize_t count = ::read(fd, content.data() + done, size - done);
-    if (count < 0 && errno != EINTR) return false;
     if (count == 0) break;  // it became shorter; the checksum will tell
-    if (count > 0) done += static_cast<std::size_t>(count);
+    if (count > 0) {
+      done += static_cast<std::size_t>(count);
+      retries = 0;
+    } else if (errno != EINTR || ++retries > StorageTuning::kMaxRetries) {
+      return false;
+    }
   }
   content.resize(done);
   return true;
@@ -68,12 +81,29 @@ bool read_all(int fd, std::size_t size, std::string& content) {
 
 }  // namespace
 
-Directory::Directory(const std::string& path, std::function<void()> after_step)
+/// Whether that was possible; in a file system without locks, where one program at a time must see to it itself, too.
+bool try_lock(int fd, int kind) {
+  return ::flock(fd, kind | LOCK_NB) == 0 || (errno != EWOULDBLOCK && errno != EINTR);
+}
+
+Directory::Directory(const std::string& path, Use use, std::function<void()> after_step,
+                     std::chrono::milliseconds patience)
     : path_(path), after_step_(std::move(after_step)), fd_(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (fd_ < 0) throw failed("open the folder", path, "make it, or check its permissions");
-  // Where a file system has no locks, one program at a time must see to it itself.
-  while (::flock(fd_, LOCK_EX) != 0 && errno == EINTR) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!try_lock(fd_, use == Use::kWrite ? LOCK_EX : LOCK_SH)) {
+    if (std::chrono::steady_clock::now() >= deadline) {
+      ::close(fd_);
+      throw MapFileError(path + ": another program holds a lock on this folder and did not give it up for " +
+                         std::to_string(patience.count() / 1000) +
+                         " s; end that program ('fuser -v' on the folder names it), or try again");
+    }
+    std::this_thread::sleep_for(std::min(StorageTuning::kLockLook, patience));
   }
+}
+
+bool Directory::try_to_lock_for_writing() {
+  return try_lock(fd_, LOCK_EX);
 }
 
 Directory::~Directory() {
@@ -94,6 +124,9 @@ std::optional<std::string> Directory::read(const std::string& name) const {
   struct stat status {};
   if (::fstat(file.fd(), &status) != 0) throw failed("read it", path_of(name), "check the disk");
   if (!S_ISREG(status.st_mode)) throw MapFileError(path_of(name) + " is not a file; move it away");
+  if (static_cast<std::uint64_t>(status.st_size) > StorageTuning::kMaxFileSize) {
+    throw MapFileError(path_of(name) + " is of " + std::to_string(status.st_size) + " bytes, which is no map's size");
+  }
   std::string content;
   if (!read_all(file.fd(), static_cast<std::size_t>(status.st_size), content)) {
     throw failed("read it", path_of(name), "check the disk");
@@ -102,7 +135,7 @@ std::optional<std::string> Directory::read(const std::string& name) const {
 }
 
 void Directory::write(const std::string& name, const std::string& content) {
-  File file(::openat(fd_, name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644));
+  File file(::openat(fd_, name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666));
   if (file.fd() < 0) throw failed("make it", path_of(name), "check the folder's permissions and the disk");
   step();
   if (!write_all(file.fd(), content) || ::fsync(file.fd()) != 0 || !file.close()) {

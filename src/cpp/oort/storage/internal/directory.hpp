@@ -1,21 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "oort/storage/tuning.hpp"
+
 namespace oort {
 
-/// A folder in which files are replaced safely. While the object lives, it holds an advisory lock on the folder, so
-/// that programs which save to and load from it take turns. Names are relative to the folder. Errors are MapFileErrors.
+/// A folder in which files are replaced safely. While the object lives, it holds an advisory lock on the folder: one
+/// program at a time saves to it, and meanwhile none loads. Names are relative to the folder. Errors are MapFileErrors.
 class Directory {
  public:
-  /// `after_step` is called after each change on the disk; tests use it to stop in between.
-  explicit Directory(const std::string& path, std::function<void()> after_step = {});
+  enum class Use { kRead, kWrite };
+
+  /// `after_step` is called after each change on the disk; tests use it to stop in between. Throws MapFileError if
+  /// there is no such folder, or if the lock of another program stays for longer than `patience`.
+  explicit Directory(const std::string& path, Use use, std::function<void()> after_step = {},
+                     std::chrono::milliseconds patience = StorageTuning::kLockPatience);
   ~Directory();
   Directory(const Directory&) = delete;
   Directory& operator=(const Directory&) = delete;
+
+  /// Makes a lock for reading one for writing, if no other program has one; others may have written before that.
+  bool try_to_lock_for_writing();
 
   bool holds(const std::string& name) const;
 

@@ -34,23 +34,24 @@ std::optional<std::string> read_matching(const Directory& directory, const std::
 
 }  // namespace
 
-FileSet::FileSet(const std::string& base, std::function<void()> after_step)
+FileSet::FileSet(const std::string& base, Directory::Use use, std::function<void()> after_step,
+                 std::chrono::milliseconds patience)
     : map_name_(name_of(base) + kMapSuffix),
       metadata_name_(name_of(base) + kMetadataSuffix),
       checksum_name_(name_of(base) + kChecksumSuffix),
-      directory_(folder_of(base), std::move(after_step)) {}
+      directory_(folder_of(base), use, std::move(after_step), patience),
+      may_write_(use == Directory::Use::kWrite) {}
 
 SetContent FileSet::read() {
-  std::optional<Whole> whole;
-  try {
-    whole = find_whole(true);
-  } catch (const MapFileError&) {
-    // Something odd under the new names must not hide what is under the old ones.
+  std::optional<Whole> whole = find_newest();
+  const bool is_new = whole && (whole->map_is_new || whole->metadata_is_new || whole->checksum_is_new);
+  if (is_new && !may_write_) {
+    may_write_ = directory_.try_to_lock_for_writing();
+    whole = find_newest();  // another program may have written in between
   }
-  if (!whole) whole = find_whole(false);
   if (!whole) throw MapFileError(why_not_whole());
   try {
-    finish_renaming(*whole);
+    if (may_write_) finish_renaming(*whole);
   } catch (const MapFileError&) {
     // A medium that cannot be written: the map can be read as it lies there.
   }
@@ -86,6 +87,15 @@ void FileSet::write(const std::optional<std::string>& map, const std::string& me
     throw;
   }
   finish_renaming({{}, map.has_value(), true, true});
+}
+
+/// Something odd under the new names must not hide what is under the old ones.
+std::optional<FileSet::Whole> FileSet::find_newest() {
+  try {
+    if (std::optional<Whole> whole = find_whole(true)) return whole;
+  } catch (const MapFileError&) {
+  }
+  return find_whole(false);
 }
 
 std::optional<FileSet::Whole> FileSet::find_whole() const {

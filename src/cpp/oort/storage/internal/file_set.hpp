@@ -25,9 +25,11 @@ struct SetContent {
 /// the two files (new or not) of each kind; reading looks for such a set, newest first, and completes the renaming.
 class FileSet {
  public:
-  /// `base` is the absolute base path. Holds the lock on its folder while it lives. Throws MapFileError if there is no
-  /// such folder. For `after_step` see Directory.
-  explicit FileSet(const std::string& base, std::function<void()> after_step = {});
+  /// `base` is the absolute base path. Holds the lock on its folder while it lives; write() needs it for writing.
+  /// For `after_step`, `patience` and errors see Directory.
+  explicit FileSet(const std::string& base, Directory::Use use = Directory::Use::kWrite,
+                   std::function<void()> after_step = {},
+                   std::chrono::milliseconds patience = StorageTuning::kLockPatience);
 
   /// The newest whole set. Throws MapFileError, which says what does not fit, if there is none.
   SetContent read();
@@ -53,6 +55,7 @@ class FileSet {
     bool checksum_is_new = false;
   };
 
+  std::optional<Whole> find_newest();
   std::optional<Whole> find_whole() const;
   std::optional<Whole> find_whole(bool checksum_is_new) const;
   std::string why_not_whole() const;
@@ -64,6 +67,7 @@ class FileSet {
   std::string metadata_name_;
   std::string checksum_name_;
   Directory directory_;
+  bool may_write_;
 };
 
 }  // namespace oort
