@@ -69,10 +69,12 @@ def _wait(process: "subprocess.Popen[bytes]", deadline: float) -> tuple[int | No
     while time.monotonic() < deadline:
         pid, status, usage = os.wait4(process.pid, os.WNOHANG)
         if pid:
-            return os.waitstatus_to_exitcode(status), usage.ru_maxrss / 1024.0
+            process.returncode = os.waitstatus_to_exitcode(status)
+            return process.returncode, usage.ru_maxrss / 1024.0
         time.sleep(0.02)
     os.killpg(process.pid, signal.SIGKILL)
-    _, _, usage = os.wait4(process.pid, 0)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
     return None, usage.ru_maxrss / 1024.0
 
 

@@ -74,15 +74,13 @@ def kill_often(count: int, seed: int) -> Counts:
 
 def _run_and_kill(base: str, seconds: float) -> int:
     """Runs a process so long after it began to map; how many nodes it told as saved."""
-    child = subprocess.Popen(
-        [sys.executable, "-c", _CHILD, base, str(Path(__file__).parent)], stdout=subprocess.PIPE, text=True
-    )
-    assert child.stdout is not None
-    first = child.stdout.readline() if seconds > 0.1 else ""  # some are killed while they begin
-    time.sleep(seconds)
-    child.send_signal(signal.SIGKILL)
-    rest = child.stdout.read()
-    child.wait()
+    command = [sys.executable, "-c", _CHILD, base, str(Path(__file__).parent)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None
+        first = child.stdout.readline() if seconds > 0.1 else ""  # some are killed while they begin
+        time.sleep(seconds)
+        child.send_signal(signal.SIGKILL)
+        rest = child.stdout.read()
     lines = [line for line in (first + rest).splitlines(keepends=True) if line.endswith("\n")]
     return int(lines[-1]) if lines else 0
 

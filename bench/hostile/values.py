@@ -97,7 +97,7 @@ def evaluate_json_nan(inputs: Path) -> str:
 def carmen_angles_1e308(inputs: Path) -> str:
     ranges = " ".join(["2.0"] * 180)
     Path("log.clf").write_text(
-        "".join(f"FLASER 180 {ranges} 0 0 1e308 0 0 1e308 {k}.0 host {k}.0\n" for k in range(20))
+        "".join(f"FLASER 180 {ranges} {k} 0 1e308 {k} 0 1e308 {k}.0 host {k}.0\n" for k in range(20))
     )
     return refused(lambda: tool_raising(["replay", "log.clf", "--quiet"]))
 

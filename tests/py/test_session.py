@@ -190,7 +190,7 @@ def test_useless_scans_are_survived(session: Session) -> None:
     drive_around(session)
     nothing = np.full(180, np.nan, np.float32)
     for i, ranges in enumerate([nothing, nothing[:0], np.full(7, np.inf, np.float32)]):
-        result = session.add_scan(Scan(ranges, -1.5, 0.1, 0.05, 6.0, 20.0 + i, stamp="20", odometry=(0.6, 0.0, 1.2)))
+        result = session.add_scan(Scan(ranges, -1.5, 0.02, 0.05, 6.0, 20.0 + i, stamp="20", odometry=(0.6, 0.0, 1.2)))
         assert result is not None and result.outcome == "skipped"
     with pytest.raises(InputError):
         session.add_scan(Scan(nothing, -1.5, 0.1, 0.05, 6.0, 30.0, stamp="30", odometry=(np.nan, 0.0, 0.0)))

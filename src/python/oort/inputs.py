@@ -13,15 +13,19 @@ _LARGEST = 1e100  # of a number: squares of larger ones are no numbers any more
 _QUOTED = 200  # characters of a damaged line that a message tells of
 
 
-def check_regular(path: Path) -> None:
-    """Raises InputError for what is not read as a file is: it may have no end, be read but once, or never come."""
+def check_regular(path: Path, what: str = "") -> None:
+    """Raises InputError for what is not read as a file is: it may have no end, be read but once, or never come.
+
+    The message calls it ``what``, if not by its path.
+    """
+    what = what or str(path)
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else error
-        raise InputError(f"{path} cannot be read: {why}; check the path") from None
+        raise InputError(f"{what} cannot be read: {why}; check the path") from None
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
-        raise InputError(f"{path} is a pipe or a device; write what comes from it into a file, and give that")
+        raise InputError(f"{what} is a pipe or a device; write what comes from it into a file, and give that")
 
 
 def read_text(path: Path) -> str:

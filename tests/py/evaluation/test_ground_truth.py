@@ -97,4 +97,4 @@ def test_command_line(map_: Map, tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert main(["relations", str(trajectory), relations]) == 0
     assert "translation  mean 0.0000 m" in capsys.readouterr().out
     assert main(["autogenerate", str(tmp_path / "none"), relations]) == 2
-    assert "error: " in capsys.readouterr().err
+    assert capsys.readouterr().err.startswith(f"oort evaluate: {tmp_path / 'none'}")

@@ -69,7 +69,7 @@ def test_negated_pictures(tmp_path: Path) -> None:
         ("resolution: 0.05", "resolution: fine", "expected finite numbers"),
         ("origin: [-3.965497, ", "origin: [", "no map description"),
         ("mode: trinary", "mode: scale", "only maps of the mode trinary"),
-        ("image: map.pgm", "image: other.pgm", "other.pgm, the picture of .* cannot be read"),
+        ("image: map.pgm", "image: other.pgm", "other.pgm, the picture of .*, cannot be read: No such file"),
     ],
 )
 def test_damaged_descriptions_are_refused(tmp_path: Path, old: str, new: str, message: str) -> None:

@@ -71,8 +71,21 @@ def test_a_map_that_is_too_wide_is_drawn_coarser(monkeypatch: pytest.MonkeyPatch
     assert notes == ["the map is too large for cells of 0.05 m: drawn with cells of 0.1 m"]
 
 
-def test_one_far_reading_does_not_widen_the_picture(tmp_path: Path) -> None:
+def test_a_reading_that_no_laser_gives_does_not_widen_the_picture(tmp_path: Path) -> None:
     (grid, _), notes = draw_map(mapped(log(tmp_path / "a.clf"), 79000.0), read_parameters())
+    assert max(grid.width, grid.height) * grid.resolution < 30.0
+    assert notes == []
+
+
+def test_one_far_reading_does_not_widen_the_picture(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def of_a_small_grid(*args: Any) -> Any:
+        drawn = render_map(*args)
+        if max(drawn[0].width, drawn[0].height) * drawn[0].resolution > 100.0:
+            raise InputError("more than a grid can hold")
+        return drawn
+
+    monkeypatch.setattr(drawing, "render_map", of_a_small_grid)
+    (grid, _), notes = draw_map(mapped(log(tmp_path / "a.clf"), 140.0), read_parameters())
     assert max(grid.width, grid.height) * grid.resolution < 30.0
     assert "the picture is cropped to" in notes[0]
     assert (grid.cells == 100).any()

@@ -261,7 +261,10 @@ def test_a_disk_that_fails(log: EventLog, monkeypatch: pytest.MonkeyPatch) -> No
         log.add(2.0, "map/stop", [])
 
 
-@pytest.mark.parametrize("path", ["none/events.json", "", "/dev/full"])
-def test_a_log_that_cannot_be_written(tmp_path: Path, path: str) -> None:
-    with pytest.raises(InputError, match="the events log cannot be written: "):
+@pytest.mark.parametrize(
+    ("path", "why"),
+    [("none/events.json", "written: "), ("", "written: "), ("/dev/full", "a device or a pipe; give a file")],
+)
+def test_a_log_that_cannot_be_written(tmp_path: Path, path: str, why: str) -> None:
+    with pytest.raises(InputError, match=f"the events log cannot be {why}"):
         EventLog(tmp_path / path)

@@ -139,7 +139,7 @@ def test_another_last_line_without_end_is_noted(tmp_path: Path) -> None:
         (LINES[2].replace("FLASER 3", "FLASER 2"), "of 2 readings must have 13 fields, but has 14"),
         (LINES[2].replace("FLASER 3", "FLASER -3"), "has '-3' where a number of readings belongs"),
         (LINES[2].replace(" 2.00 ", " 2.0.0 "), "reading that is no number"),
-        (LINES[2].replace("100.123456", "nan"), "not finite: nan"),
+        (LINES[2].replace("100.123456", "nan"), "not finite: 'nan'"),
         (LINES[2].replace("0.500000", "north"), "field that is no number"),
         ("FLASER", "has only 1 fields"),
         (ROBOTLASER.replace(" 3 1 2 3 ", " 4 1 2 3 "), "must have|number of readings belongs"),

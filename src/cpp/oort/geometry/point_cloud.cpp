@@ -26,8 +26,9 @@ void check_fields(const LaserScan& scan) {
   const double step = std::abs(scan.angle_increment);
   const bool spreads = step >= GeometryTuning::kMinAngleIncrement && beams * step <= GeometryTuning::kMaxFieldOfView;
   if (std::abs(scan.angle_min) > GeometryTuning::kMaxFieldOfView || (beams > 1.0 && !spreads)) {
-    throw InputError("laser scan: " + std::to_string(scan.ranges.size()) + " beams from angle_min on by " +
-                     "angle_increment do not spread over a turn or less; check the driver that fills them in");
+    throw InputError("laser scan: " + std::to_string(scan.ranges.size()) + " beams from angle_min " +
+                     std::to_string(scan.angle_min) + " on by angle_increment " + std::to_string(scan.angle_increment) +
+                     " overlap or go beyond two turns; check the driver that fills them in");
   }
 }
 

@@ -5,18 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "oort/loop_closure/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
 
 namespace {
 
-// [m] Neighbouring nodes lie a metre apart: one that is farther off comes from a damaged map, and would make the table
-// larger than memory.
-constexpr double kMaxSubmapReach = 50.0;
-
 void draw_scan(const Map& map, const PlacedNode& placed, const frsm::ContourParams& contours, frsm::Table& table) {
-  if (placed.T_origin_node.translation().norm() > kMaxSubmapReach) return;
+  if (placed.T_origin_node.translation().norm() > LoopClosureTuning::kMaxSubmapReach) return;
   const frsm::Pose T_origin_node = to_frsm(placed.T_origin_node);
   const frsm::Points points = returns_of(map.clouds[placed.node]);
   table.draw(frsm::transform(T_origin_node, points), frsm::extract_contours(points, contours), T_origin_node);

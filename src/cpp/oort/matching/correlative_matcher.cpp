@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "oort/matching/grid_score.hpp"
+#include "oort/matching/tuning.hpp"
 
 namespace oort {
 namespace {
-
-constexpr int kMaxTurns = 1000;  // to each side: what is told by more lies beyond what a sensor tells
 
 struct Candidate {
   Eigen::Vector3d offset;  // x, y [m], theta [rad] from the guess
@@ -53,7 +52,7 @@ ScanMatch CorrelativeMatcher::match(const Points& points, const Pose2& guess) co
   match.pose = guess;
   if (points.empty()) return match;
   const double step = grid_.limits().resolution;
-  const double turn = std::max(angular_step(points, step), options_.angular_search_window / kMaxTurns);
+  const double turn = std::max(angular_step(points, step), options_.angular_search_window / MatchingTuning::kMaxTurns);
   const int shifts = static_cast<int>(std::ceil(options_.linear_search_window / step));
   const int turns = static_cast<int>(std::ceil(options_.angular_search_window / turn));
 

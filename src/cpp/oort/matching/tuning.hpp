@@ -12,6 +12,9 @@ struct MatchingTuning {
   /// Cells from the sensor within which a point counts as being so far, or the angular step would be a half turn.
   static constexpr double kNearestCells = 3.0;
 
+  /// Of the search, to each side: finer steps than these lie below a sensor's.
+  static constexpr int kMaxTurns = 1000;
+
   /// Steps each way from the best pose that its covariance is taken from.
   static constexpr int kCovarianceSteps = 3;
 

@@ -98,8 +98,8 @@ def read_map_server(path: str | os.PathLike[str]) -> GridMap:
         raise InputError(f"{path} is no map description as map_server has it: {quoted(error)}") from None
     if mode != "trinary":
         raise InputError(f"{path}: only maps of the mode trinary can be read, not {mode}")
+    check_regular(image, f"{image}, the picture of {path},")
     try:
-        check_regular(image)
         with Image.open(image) as picture:
             grey = np.asarray(picture.convert("L"), dtype=np.float64)
     except (OSError, ValueError, SyntaxError, MemoryError, Image.DecompressionBombError) as error:  # as Pillow has it

@@ -59,15 +59,18 @@ class Keeper:
     def close(self) -> None:
         """Ends after what was asked for."""
         self.saver.close()
-        if self._claim is not None:
-            self._claim.release()
+        self._give_up_path()
 
     def _claim_path(self, path: str) -> None:
         if self._claim is None or not self._claim.is_for(path):
             claim = Claim(path)
-            if self._claim is not None:
-                self._claim.release()
+            self._give_up_path()
             self._claim = claim
+
+    def _give_up_path(self) -> None:
+        if self._claim is not None:
+            self._claim.release()
+            self._claim = None
 
     # ---- what happens to the map ----
 
@@ -82,9 +85,7 @@ class Keeper:
     def forget(self) -> None:
         """The map was replaced or dropped, and others may save where it was."""
         self._unsaved = False
-        if self._claim is not None:
-            self._claim.release()
-            self._claim = None
+        self._give_up_path()
 
     # ---- saving ----
 
