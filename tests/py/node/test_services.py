@@ -25,7 +25,7 @@ ORIGIN = Pose2D(0.0, 0.0, 0.0)
 
 def files(path: str) -> dict[str, bytes]:
     """The files of a saved map by their endings."""
-    return {file.suffix: file.read_bytes() for file in Path(path).parent.iterdir()}
+    return {file.suffix: file.read_bytes() for file in Path(path).parent.glob(f"{Path(path).name}*")}
 
 
 def test_all_services_are_there_and_no_others(ros: Core, client: Client) -> None:
