@@ -3,7 +3,7 @@
 """Finding and following a robot on the map of another drive through the same simulated home."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -96,6 +96,21 @@ def test_a_drive_is_followed(home: Home) -> None:
     assert np.count_nonzero(tracking) > 0.8 * len(scans)
     assert errors[tracking].max() < 0.2
     assert sum(stretch.scans for stretch in drive.stretches) == len(scans)
+
+
+def test_a_drive_with_two_lasers_is_followed(home: Home) -> None:
+    """Each sees a half of what the one saw."""
+    recording, scans = scans_of(home)
+    mount, halves = recording.sensor_on_base, []
+    for scan in scans[:300]:
+        for hidden, place in ((slice(None, None, 2), mount), (slice(1, None, 2), None)):
+            ranges = scan.ranges.copy()
+            ranges[hidden] = np.inf
+            halves.append(replace(scan, ranges=ranges, mount=place))
+    drive = follow(recording, halves, home.map, Parameters(), start_pose(home.map, Parameters(), "dock"))
+    errors = np.hypot(*(np.array(drive.base_poses) - home.later.T_map_base[: len(drive.base_poses)])[:, :2].T)
+    assert len(drive.stamps) == 300
+    assert np.median(errors) < 0.05
 
 
 def test_the_same_scans_give_the_same_poses(home: Home) -> None:

@@ -141,14 +141,14 @@ void bind_localizer(py::module_& m) {
           "Takes the next scan as Mapper.add_ranges does. Raises InputError; nothing changes then.")
       .def(
           "add_ranges_of_other",
-          [](Localizer& l, const PoseTuple& mount, double time, double angle_min, double angle_increment,
-             double range_min, double range_max,
-             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
+          [](GuardedLocalizer& guard, const PoseTuple& mount, double time, double angle_min, double angle_increment,
+             double range_min, double range_max, const Ranges& ranges, const PoseTuple& odometry,
              const SweepTuple& sweep) {
-            l.add_scan_of_other(pose_of(mount),
-                                {time, angle_min, angle_increment, range_min, range_max,
-                                 std::vector<float>(ranges.data(), ranges.data() + ranges.size())},
-                                pose_of(odometry), sweep_of(sweep));
+            const LaserScan scan{
+                time,      angle_min, angle_increment,
+                range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
+            guard.aside(
+                [&](Localizer& l) { l.add_scan_of_other(pose_of(mount), scan, pose_of(odometry), sweep_of(sweep)); });
           },
           py::arg("sensor_on_base"), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
           py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),

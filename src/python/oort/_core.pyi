@@ -532,7 +532,7 @@ class Localizer:
     ) -> None:
         """Takes the next scan as Mapper.add_ranges does. Raises InputError; nothing changes then."""
     def add_ranges_of_other(
-        self: ...,
+        self,
         sensor_on_base: tuple[float, float, float],
         time: float,
         angle_min: float,
