@@ -63,7 +63,7 @@ struct MapperTuning {
   static constexpr int kContradictions = 3;
 
   static constexpr std::uint64_t kMaxLooks = 16;  ///< for a segment when mapping ends
-  static constexpr int kMaxLooksInAll = 300;      ///< some 30 s at most
+  static constexpr int kMaxLooksInAll = 100;      ///< some 10 s in a building, 60 s on large grounds (fr-clinic)
   static constexpr int kMaxRounds = 8;            ///< of looking for all of them: what was found helps to find others
 
   static constexpr double kReferenceMoved = 0.1;  ///< [m] by which a node moves until the map is drawn anew,

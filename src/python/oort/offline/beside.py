@@ -12,7 +12,8 @@ from oort.errors import InputError
 
 _GAP = 0.5  # [m] between the map and its parts
 _UNKNOWN = -1  # of cells
-_LARGEST = 4000  # cells along a side of the whole picture
+_LARGEST = 4000  # cells along a side of the whole picture, or
+_GROWTH = 2  # times the longer side of the map
 _CAPTION = "not tied: its place is not known"
 
 
@@ -37,6 +38,7 @@ def set_beside(map_: Map, grid: OccupancyGrid, parameters: Parameters) -> Beside
     captions: list[tuple[str, tuple[float, float]]] = []
     gap = max(1, round(_GAP / grid.resolution))
     column, row, widest = cells.shape[1] + gap, 0, 0
+    largest = max(_LARGEST, _GROWTH * max(cells.shape))
     for number, nodes in enumerate(map_.loose_parts):
         part[nodes], shift[nodes] = number, np.nan
         drawn = _draw(map_, nodes, grid.resolution, parameters)
@@ -44,7 +46,7 @@ def set_beside(map_: Map, grid: OccupancyGrid, parameters: Parameters) -> Beside
             continue
         if row > 0 and row + drawn.cells.shape[0] > cells.shape[0]:  # another column
             column, row, widest = column + widest + gap, 0, 0
-        if max(column + drawn.cells.shape[1], row + drawn.cells.shape[0]) > max(_LARGEST, *cells.shape):
+        if max(column + drawn.cells.shape[1], row + drawn.cells.shape[0]) > largest:
             continue
         cells = _paste(cells, np.asarray(drawn.cells), row, column)
         corner = np.array(grid.origin) + np.array([column, row]) * grid.resolution

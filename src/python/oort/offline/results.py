@@ -103,6 +103,7 @@ def _write_pictures(
     origin = (*grid.origin, 0.0)
     beside = set_beside(map_, grid, drive.parameters)
     closures = _closure_ends(map_, beside)
+    drawn = np.isfinite(closures).all(axis=(1, 2))
     on = map_.switchable_edges["switch"] >= SWITCH_ON
     outputs.write("map.pgm map.yaml", lambda: write_map_server(out / "map", grid.cells, grid.resolution, origin))
     outputs.write(
@@ -113,8 +114,8 @@ def _write_pictures(
             grid.resolution,
             origin,
             trajectory=_way(drive, base_poses, beside),
-            accepted=closures[on],
-            rejected=closures[~on],
+            accepted=closures[on & drawn],
+            rejected=closures[~on & drawn],
             locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
             captions=beside.captions,
         ),
@@ -180,9 +181,12 @@ def _names(drive: Drive) -> list[tuple[str, str]]:
 
 
 def _closure_ends(map_: Map, beside: Beside) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """(k, 2, 2): where each closure is in the picture; both ends at the first node if they are of different parts."""
+    """(k, 2, 2): where each closure is in the picture; both ends at the first node if they are of different parts.
+
+    NaN for a closure of nodes that are not drawn.
+    """
     edges = map_.switchable_edges
-    positions = map_.node_poses[:, :2] + np.nan_to_num(beside.shift)
+    positions = map_.node_poses[:, :2] + beside.shift
     i, j = edges["i"], np.where(beside.part[edges["i"]] == beside.part[edges["j"]], edges["j"], edges["i"])
     return np.stack([positions[i], positions[j]], axis=1)
 
