@@ -6,14 +6,17 @@ import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
 
 from helpers.live_rig import Recorder
 from oort import Parameters
 from oort.live import LiveSession
 from oort.simulate import Drive, simulate_drive
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -50,8 +53,10 @@ def live(recorder: Recorder) -> Iterator[LiveSession]:
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
+def browser() -> Iterator["Browser"]:
     """A real browser without a window."""
+    from playwright.sync_api import sync_playwright  # not there for the nodes over ROS 2
+
     chromium = shutil.which("chromium")
     assert chromium, "chromium is missing: scripts/setup.sh --test installs it"
     with sync_playwright() as playwright:
