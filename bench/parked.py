@@ -23,7 +23,7 @@ from oort.recording import Scan
 from oort.simulate import Drive, SimulationConfig, simulate_drive
 from oort.simulate.person import LEG_RADIUS, walk_along
 from oort.simulate.sensor import cast_drive, measure
-from trials.drives import recording_of
+from trials.drives import recording_of, scan_at
 
 RATE = 10  # scans a second
 REPEATED = 20 * 60 * RATE  # scans
@@ -59,16 +59,7 @@ def parked_scans(drive: Drive, hours: int) -> Iterator[Scan]:
         if at == 0:
             ranges = measure(sensor, *seen, rng)
         stamp = start + (number + 1) / RATE
-        yield Scan(
-            time=stamp,
-            stamp=f"{stamp:.6f}",
-            angle_min=drive.angle_min,
-            angle_increment=drive.angle_increment,
-            range_min=drive.range_min,
-            range_max=drive.range_max,
-            ranges=ranges[at],
-            odometry=(x, y, theta),
-        )
+        yield scan_at(drive, stamp, ranges[at], (x, y, theta))
 
 
 def memory_mb() -> float:

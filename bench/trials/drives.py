@@ -11,9 +11,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 import oort.simulate
 from oort.events import Event
-from oort.recording import Recording, Scan
+from oort.recording import Pose, Recording, Scan
 from oort.simulate import Drive, Sensor, SimulationConfig, simulate_drive
 
 
@@ -100,16 +103,21 @@ def _scans(drive: Drive) -> Iterator[Scan]:
     for index, (time, odometry) in enumerate(
         zip(drive.scan_times.tolist(), drive.T_odom_base_at_scans.tolist(), strict=True)
     ):
-        yield Scan(
-            time=time,
-            stamp=f"{time:.6f}",
-            angle_min=drive.angle_min,
-            angle_increment=drive.angle_increment,
-            range_min=drive.range_min,
-            range_max=drive.range_max,
-            ranges=drive.ranges[index],
-            odometry=(odometry[0], odometry[1], odometry[2]),
-        )
+        yield scan_at(drive, time, drive.ranges[index], (odometry[0], odometry[1], odometry[2]))
+
+
+def scan_at(drive: Drive, time: float, ranges: NDArray[np.float32], odometry: Pose) -> Scan:
+    """A scan of the drive's sensor."""
+    return Scan(
+        time=time,
+        stamp=f"{time:.6f}",
+        angle_min=drive.angle_min,
+        angle_increment=drive.angle_increment,
+        range_min=drive.range_min,
+        range_max=drive.range_max,
+        ranges=ranges,
+        odometry=odometry,
+    )
 
 
 def events_of(drive: Drive) -> list[Event]:
