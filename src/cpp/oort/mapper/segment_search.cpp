@@ -188,25 +188,21 @@ std::vector<SegmentFinding> SegmentSearch::look_for_all(const Map& map, const Tr
   return findings;
 }
 
-/// Looks for a segment by what was seen on all of it.
+/// Looks for a segment by what was seen on all of it. One that is not found stays where odometry leads, even where that
+/// contradicts the map: a bent map does so too.
 SegmentFinding SegmentSearch::look_for(const NodeRange& segment, const Map& map, const TrajectorySegments& segments,
                                        int& looks_left) const {
   std::vector<FoundPlace> answers;
-  int looks = 0, contradicted = 0;
   const std::uint64_t step =
       std::max((segment.end - segment.begin) / MapperTuning::kMaxLooks, MapperTuning::kLeastSearchSpacing);
   for (std::uint64_t node = segment.begin + MapperTuning::kFirstSearch - 1; node < segment.end; node += step) {
     if (looks_left-- <= 0) return {};
-    ++looks;
-    if (finder_.contradicts(map, segments, segment.begin, node, nullptr)) ++contradicted;
     const std::optional<FoundPlace> answer = finder_.find(map, segments, segment.begin, node, nullptr);
     if (!answer) continue;
     add_answer(answers, *answer, map);
     if (are_enough(answers, map)) return placed(answers, map);
   }
-  SegmentFinding finding;
-  finding.disproved = 2 * contradicted > looks;
-  return finding;
+  return {};
 }
 
 }  // namespace oort
