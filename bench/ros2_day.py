@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A robot's day with Oort's nodes in ROS 2: in real time, all by ROS clients.
 
-    .venv-ros2/bin/python bench/ros2_day.py [--minutes 10] [--rate 1]
+    .venv-ros2/bin/python bench/ros2_day.py [--minutes 10] [--rate 1] [--resolution 0.05]
 
 A simulated robot maps its home (with the calls at the dock that belong to the drive, a place in the middle, and the
 stop), is then found on the saved map by the localiser, and goes on with the map from there. Prints a table: what was
 mapped, CPU of the nodes, delays from a scan to map -> odom as the node tells them, and how far poses
-are from the truth. ``--rate 4`` plays the drive four times as fast: 40 scans a second.
+are from the truth. ``--rate 4`` plays the drive four times as fast: 40 scans a second. ``--resolution 0.0085`` makes
+the map of a home, which a client hears as it grows, as large as 1000 x 1000 cells.
 """
 
 import argparse
@@ -24,6 +25,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests/py"))
 
 from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import OccupancyGrid
 from tf2_msgs.msg import TFMessage
 
 from helpers.course import ODOM, of_drive
@@ -108,10 +110,11 @@ def ask(peer: Peer, service: str, kind: str = "Empty", **fields: Any) -> Any:
     return reply.response
 
 
-def mapping(peer: Peer, folder: Path, drive: Drive, rate: float) -> Iterator[tuple[str, str]]:
+def mapping(peer: Peer, folder: Path, drive: Drive, rate: float, resolution: float) -> Iterator[tuple[str, str]]:
     """The drive is mapped and saved."""
     seconds = float(drive.odometry_times[-1] - drive.odometry_times[0])
-    with running(peer, folder) as program:
+    with running(peer, folder, resolution=resolution) as program:
+        grids = peer.hear("map", OccupancyGrid, latched=True)
         told, poses, player = peer.hear("/diagnostics", DiagnosticArray), Poses(peer), Player(peer, drive, rate)
 
         def call(name: str, args: Sequence[str]) -> Callable[[], object]:
@@ -127,6 +130,7 @@ def mapping(peer: Peer, folder: Path, drive: Drive, rate: float) -> Iterator[tup
         used, lasted = cpu_seconds(program) - before, time.monotonic() - begun
         until(lambda: figures(told)["scans processed"] == str(len(player.sent)), "all scans are mapped", 30.0)
         said = figures(told)
+        maps, grid = len(grids), grids[-1].info
         ask(peer, f"{SLAM}/map/stop")
         ask(peer, f"{SLAM}/save_map", "SetString", data=str(folder / "shown"))
         places = ask(peer, f"{SLAM}/graph_loc/list", "LocNamespace", nspace="", use_as_prefix=True)
@@ -138,6 +142,7 @@ def mapping(peer: Peer, folder: Path, drive: Drive, rate: float) -> Iterator[tup
         for name, key in (("scan to map -> odom", "delay [ms]"), ("mapping a scan", "ms per scan")):
             spread = " / ".join(said[f"{key}, {which}"] for which in ("median", "99 %", "worst"))
             yield f"{name}, by the node, last 600 scans: P50 / P99 / worst, ms", spread
+        yield "maps heard meanwhile, and cells of the last", f"{maps}, {grid.width} x {grid.height}"
         yield "base at the last scan, from the truth, m", f"{error(drive, poses.last(), len(player.sent) - 1):.3f}"
     peer.forget()
 
@@ -173,6 +178,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--minutes", type=float, default=10.0, help="of the drive (default: 10)")
     parser.add_argument("--rate", type=float, default=1.0, help="how many times as fast (default: 1)")
+    parser.add_argument("--resolution", type=float, default=0.05, help="cell of the drawn map [m] (default: 0.05)")
     parser.add_argument("--seed", type=int, default=1, help="of the simulated home (default: 1)")
     args = parser.parse_args(argv)
     drive = simulate_drive(args.seed, SimulationConfig(minutes=args.minutes))
@@ -181,7 +187,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         peer = RclpyPeer(folder, 101 + os.getpid() % 100)
         try:
             load = os.getloadavg()[0]
-            rows = [row for part in (mapping, again) for row in part(peer, folder, drive, args.rate)]
+            rows = [*mapping(peer, folder, drive, args.rate, args.resolution), *again(peer, folder, drive, args.rate)]
             print("| what | measured |\n|---|---|")  # after what the nodes have printed
             print("\n".join(f"| {what} | {measured} |" for what, measured in rows))
             print(f"\nload before and after: {load:.1f}, {os.getloadavg()[0]:.1f}")

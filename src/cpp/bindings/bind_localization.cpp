@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/eigen.h>
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -11,22 +10,13 @@
 #include "guarded.hpp"
 #include "oort/localization/localizer.hpp"
 #include "oort/localization/relocalizer.hpp"
+#include "scans.hpp"
 #include "states.hpp"
 
 namespace py = pybind11;
 
 namespace oort {
 namespace {
-
-using Ranges = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-py::array_t<double> array_of(const Eigen::Matrix3d& matrix) {
-  py::array_t<double> array({3, 3});
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) array.mutable_at(row, column) = matrix(row, column);
-  }
-  return array;
-}
 
 py::dict dict_of(const Support& s) {
   py::dict dict;
@@ -41,8 +31,7 @@ py::dict dict_of(const Support& s) {
 
 PlacedScan placed_scan(double time, double angle_min, double angle_increment, double range_min, double range_max,
                        const Ranges& ranges, const PoseTuple& T_odom_sensor, const SweepTuple& sweep) {
-  const PointCloud cloud = to_point_cloud({time, angle_min, angle_increment, range_min, range_max,
-                                           std::vector<float>(ranges.data(), ranges.data() + ranges.size())});
+  const PointCloud cloud = to_point_cloud(scan_of(time, angle_min, angle_increment, range_min, range_max, ranges));
   return {deskew(cloud, sweep_of(sweep)), pose_of(T_odom_sensor)};
 }
 
@@ -67,7 +56,7 @@ void bind_relocalizer(py::module_& m) {
       .def_property_readonly(
           "T_map_sensor", [](const Hypothesis& h) { return tuple_of(h.T_map_sensor); }, "Of the newest scan.")
       .def_property_readonly(
-          "covariance", [](const Hypothesis& h) { return array_of(h.covariance); },
+          "covariance", [](const Hypothesis& h) { return h.covariance; },
           "(3, 3) of x, y, theta, along the axes of the map.")
       .def_property_readonly(
           "support", [](const Hypothesis& h) { return h.support.value(); },
@@ -111,10 +100,12 @@ std::optional<PoseTuple> tuple_of(const std::optional<Pose2>& pose) {
 
 void bind_localizer(py::module_& m) {
   using GuardedLocalizer = Guarded<Localizer>;
-  py::class_<GuardedLocalizer>(
+  py::class_<GuardedLocalizer> localizer(
       m, "Localizer",
       "Follows a robot on a map that does not change. Threads may share it: its calls are made "
-      "one after the other.")
+      "one after the other.");
+  bind_add_ranges(localizer);
+  localizer
       .def(py::init([](const std::shared_ptr<ReferenceMap>& map, const Parameters& parameters, const PoseTuple& mount) {
              return std::make_unique<GuardedLocalizer>(map, parameters, pose_of(mount));
            }),
@@ -127,36 +118,9 @@ void bind_localizer(py::module_& m) {
           py::arg("sensor_on_map"), py::arg("covariance"),
           "Says about where the sensor is at the next scan; the covariance is along the axes of the map.")
       .def("start_searching", guarded(&Localizer::start_searching), "Forgets the pose.")
-      .def(
-          "add_ranges",
-          [](GuardedLocalizer& guard, double time, double angle_min, double angle_increment, double range_min,
-             double range_max, const Ranges& ranges, const PoseTuple& odometry, const SweepTuple& sweep) {
-            const LaserScan scan{
-                time,      angle_min, angle_increment,
-                range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
-            guard.aside([&](Localizer& l) { l.add_scan(scan, pose_of(odometry), sweep_of(sweep)); });
-          },
-          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
-          py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
-          "Takes the next scan as Mapper.add_ranges does. Raises InputError; nothing changes then.")
-      .def(
-          "add_ranges_of_other",
-          [](GuardedLocalizer& guard, const PoseTuple& mount, double time, double angle_min, double angle_increment,
-             double range_min, double range_max, const Ranges& ranges, const PoseTuple& odometry,
-             const SweepTuple& sweep) {
-            const LaserScan scan{
-                time,      angle_min, angle_increment,
-                range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
-            guard.aside(
-                [&](Localizer& l) { l.add_scan_of_other(pose_of(mount), scan, pose_of(odometry), sweep_of(sweep)); });
-          },
-          py::arg("sensor_on_base"), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
-          py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
-          py::arg("sweep") = py::none(),
-          "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.")
       .def_property_readonly(
           "state", [](GuardedLocalizer& guard) { return guard.with([](const Localizer& l) { return l.state(); }); },
-          "How well the sensor\'s place is known.")
+          "How well the sensor's place is known.")
       .def_property_readonly(
           "T_map_sensor",
           [](GuardedLocalizer& guard) {
@@ -172,7 +136,7 @@ void bind_localizer(py::module_& m) {
       .def_property_readonly(
           "covariance",
           [](GuardedLocalizer& guard) {
-            return guard.with([](const Localizer& l) { return array_of(l.covariance()); });
+            return guard.with([](const Localizer& l) { return Eigen::Matrix3d(l.covariance()); });
           },
           "(3, 3) of T_map_sensor, along the axes of the map.")
       .def_property_readonly("support", guarded(&Localizer::support), "How well the latest scan fitted, at most 1.")

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/eigen.h>
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -14,6 +13,7 @@
 #include "guarded.hpp"
 #include "oort/maintenance/prune.hpp"
 #include "oort/mapper/mapper.hpp"
+#include "scans.hpp"
 #include "states.hpp"
 
 namespace py = pybind11;
@@ -142,12 +142,6 @@ py::dict dict_of(const MapperStatistics& statistics) {
   return dict;
 }
 
-LaserScan scan_of(double time, double angle_min, double angle_increment, double range_min, double range_max,
-                  const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges) {
-  return {time,      angle_min, angle_increment,
-          range_min, range_max, std::vector<float>(ranges.data(), ranges.data() + ranges.size())};
-}
-
 py::list locations_of(const Mapper& mapper) {
   py::list list;
   for (const Location& l : mapper.map().locations) {
@@ -167,8 +161,7 @@ void bind_pruning(py::module_& m) {
       },
       py::arg("map"), py::arg("views"), py::arg("always") = true,
       "The map without the nodes that show no piece of surface that others do not show from the same side so often, "
-      "and "
-      "without what newer segments contradict. Not always: only if that is a good part of the nodes, and nothing "
+      "and without what newer segments contradict. Not always: only if that is a good part of the nodes, and nothing "
       "else.");
 }
 
@@ -209,36 +202,8 @@ void bind_scans(py::class_<Guarded<Mapper>>& c) {
           [](Guarded<Mapper>& guard, const PoseTuple& pose) {
             guard.aside([&](Mapper& mapper) { mapper.mount_sensor(pose_of(pose)); });
           },
-          py::arg("sensor_on_base"), "Says where the sensor sits on the base, before the first scan.")
-      .def(
-          "add_ranges",
-          [](Guarded<Mapper>& guard, double time, double angle_min, double angle_increment, double range_min,
-             double range_max, const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges,
-             const PoseTuple& odometry, const SweepTuple& sweep) {
-            const LaserScan scan = scan_of(time, angle_min, angle_increment, range_min, range_max, ranges);
-            return guard.aside(
-                [&](Mapper& mapper) { return mapper.add_scan(scan, pose_of(odometry), sweep_of(sweep)); });
-          },
-          py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
-          py::arg("ranges"), py::arg("odometry"), py::arg("sweep") = py::none(),
-          "Takes the next scan with T_odom_base at its stamp and, for one whose beams were not measured at once, where "
-          "the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError; "
-          "nothing changes then.")
-      .def(
-          "add_ranges_of_other",
-          [](Guarded<Mapper>& guard, const PoseTuple& mount, double time, double angle_min, double angle_increment,
-             double range_min, double range_max,
-             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, const PoseTuple& odometry,
-             const SweepTuple& sweep) {
-            const LaserScan scan = scan_of(time, angle_min, angle_increment, range_min, range_max, ranges);
-            guard.aside([&](Mapper& mapper) {
-              mapper.add_scan_of_other(pose_of(mount), scan, pose_of(odometry), sweep_of(sweep));
-            });
-          },
-          py::arg("sensor_on_base"), py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"),
-          py::arg("range_min"), py::arg("range_max"), py::arg("ranges"), py::arg("odometry"),
-          py::arg("sweep") = py::none(),
-          "Takes a scan of another laser, which joins the next one of the main laser. Raises InputError.");
+          py::arg("sensor_on_base"), "Says where the sensor sits on the base, before the first scan.");
+  bind_add_ranges(c);
 }
 
 void bind_calls(py::class_<Guarded<Mapper>>& c) {

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -9,18 +8,16 @@
 
 #include "bindings.hpp"
 #include "oort/sensor/scan_pair.hpp"
+#include "scans.hpp"
 
 namespace py = pybind11;
 
 namespace oort {
 namespace {
 
-using Ranges = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
 PointCloud cloud_of(double time, double angle_min, double angle_increment, double range_min, double range_max,
                     const Ranges& ranges) {
-  return to_point_cloud({time, angle_min, angle_increment, range_min, range_max,
-                         std::vector<float>(ranges.data(), ranges.data() + ranges.size())});
+  return to_point_cloud(scan_of(time, angle_min, angle_increment, range_min, range_max, ranges));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 import math
 import stat
+from collections.abc import Iterator
 from pathlib import Path
 
 from oort.errors import InputError
@@ -63,3 +64,19 @@ def floats(fields: list[str], where: str) -> list[float]:
     if not all(abs(value) < _LARGEST for value in values):
         raise InputError(f"{where}: expected finite numbers, not {quoted(' '.join(fields))}; the file is damaged")
     return values
+
+
+def read_rows(path: Path, columns: str) -> Iterator[tuple[str, list[str], list[float]]]:
+    """The lines of a text file of numbers: where each is, for messages, its fields, and their values.
+
+    `columns` names the fields, apart by blanks. Empty lines and those that begin with # are left out. Raises
+    InputError for a file that cannot be read and for a line of another count or that is not numbers.
+    """
+    for number, line in enumerate(read_text(path).splitlines(), 1):
+        fields = line.split()
+        if not fields or fields[0].startswith("#"):
+            continue
+        where = f"{path}: line {number}"
+        if len(fields) != len(columns.split()):
+            raise InputError(f"{where}: expected {columns}, but there are {len(fields)} fields")
+        yield where, fields, floats(fields, where)

@@ -58,8 +58,18 @@ def test_sensor_on_base_is_the_laser_seen_from_the_robot(tmp_path: Path) -> None
 
 def test_a_laser_that_moves_on_the_robot_is_refused(tmp_path: Path) -> None:
     lines = [flaser("1.0", [1.0], (0, 0, 0), (0, 0, 0)), flaser("2.0", [1.0], (0.5, 0, 0), (0, 0, 0))]
-    with pytest.raises(InputError, match=r"does not stay in its place.*0\.50 m.*raw log"):
+    with pytest.raises(InputError, match=r"does not stay in its place.*0\.50 m.*raw log.*--mount"):
         open_recording(write(tmp_path / "a.clf", "\n".join(lines) + "\n"))
+
+
+def test_poses_taken_at_different_times_jitter_around_the_mount(tmp_path: Path) -> None:
+    lag = np.random.default_rng(1).uniform(-0.1, 0.1, size=60)
+    lines = [
+        flaser(f"{k}.0", [1.0], (0.3 * k + 0.2 + lag[k], 0.0, lag[k] / 2), (0.3 * k, 0.0, 0.0)) for k in range(len(lag))
+    ]
+    recording = open_recording(write(tmp_path / "a.clf", "\n".join(lines) + "\n"))
+    np.testing.assert_allclose(recording.sensor_on_base, (0.2, 0.0, 0.0), atol=0.03)
+    assert any("taken at different times" in note for note in recording.notes)
 
 
 @pytest.mark.parametrize(("n", "step"), [(180, 1.0), (181, 1.0), (360, 0.5), (361, 0.5), (90, 2.0), (541, 180 / 541)])

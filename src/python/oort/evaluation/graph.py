@@ -13,7 +13,7 @@ from oort._core import AGREEMENT_CHI2, SWITCH_ON, OptimizerOptions, OptimizerSum
 from oort.errors import InputError
 from oort.evaluation.trajectories import alignment
 from oort.export import PoseGraph, read_g2o
-from oort.inputs import floats, read_text
+from oort.inputs import read_rows
 from oort.poses import between, compose, wrap_angle
 
 METHODS = {
@@ -103,14 +103,7 @@ def read_truth(path: str | os.PathLike[str], graph: PoseGraph) -> NDArray[np.flo
         if len(missing):
             raise InputError(f"{path} has no vertex {missing[0]}; is it the truth of this graph?")
         return truth.poses[_find(truth.ids, graph.ids)]
-    rows = []
-    for number, line in enumerate(read_text(path).splitlines(), 1):
-        fields = line.split()
-        if not fields or fields[0].startswith("#"):
-            continue
-        if len(fields) != 3:
-            raise InputError(f"{path}: line {number}: expected x y theta, but there are {len(fields)} fields")
-        rows.append(floats(fields, f"{path}: line {number}"))
+    rows = [values for _, _, values in read_rows(path, "x y theta")]
     if len(rows) != len(graph.ids):
         raise InputError(f"{path} has {len(rows)} poses, but the graph has {len(graph.ids)} nodes; is it its truth?")
     return np.array(rows)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from oort.errors import InputError
 from oort.export.tum import Trajectory
-from oort.inputs import floats, read_text
+from oort.inputs import read_rows
 from oort.poses import between, compose, wrap_angle
 
 _ROUNDED = 1.001e-4  # [s] between a time of a relation that was rounded and the pose's
@@ -113,15 +113,7 @@ def relation_errors(
 
 def _read_relations(path: Path) -> NDArray[np.float64]:
     """(n, 8) rows as in the file."""
-    rows = []
-    for number, line in enumerate(read_text(path).splitlines(), 1):
-        fields = line.split()
-        if not fields or fields[0].startswith("#"):
-            continue
-        where = f"{path}: line {number}"
-        if len(fields) != 8:
-            raise InputError(f"{where}: expected t1 t2 x y z roll pitch yaw, but there are {len(fields)} fields")
-        rows.append(floats(fields, where))
+    rows = [values for _, _, values in read_rows(path, "t1 t2 x y z roll pitch yaw")]
     return np.array(rows, dtype=np.float64).reshape(-1, 8)
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from oort.errors import InputError
 from oort.export.files import decimal, write_atomically
-from oort.inputs import floats, read_text
+from oort.inputs import floats, read_rows
 from oort.poses import wrap_angle
 
 
@@ -56,14 +56,7 @@ def read_tum(path: str | os.PathLike[str]) -> Trajectory:
     path = Path(path)
     stamps = []
     poses = []
-    for number, line in enumerate(read_text(path).splitlines(), 1):
-        fields = line.split()
-        if not fields or fields[0].startswith("#"):
-            continue
-        where = f"{path}: line {number}"
-        if len(fields) != 8:
-            raise InputError(f"{where}: expected time x y z qx qy qz qw, but there are {len(fields)} fields")
-        _, x, y, _, qx, qy, qz, qw = floats(fields, where)
+    for where, fields, (_, x, y, _, qx, qy, qz, qw) in read_rows(path, "time x y z qx qy qz qw"):
         norm = qx * qx + qy * qy + qz * qz + qw * qw
         if norm < 1e-6:
             raise InputError(f"{where}: the quaternion has no length, so it is no rotation")

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from oort._core import Parameters
+from oort._core import Parameters, ScanResult
 from oort.errors import InputError, OortError
 from oort.evaluation.attempts import MOST
 from oort.events import Event
@@ -90,12 +90,8 @@ def replay(
                 session.add_scan(mapped)
             continue
         if mapped is not None:
-            started, waited = time.perf_counter(), session.mapper.work_seconds["waiting"]
-            result = session.add_scan(mapped)
-            waited = session.mapper.work_seconds["waiting"] - waited
-            watch.scan_seconds.append(time.perf_counter() - started - waited)
-            watch.waited_seconds.append(waited)
-            log.add(scan.time, result, watch.scan_seconds[-1], waited)
+            result = _map_timed(session, mapped, watch)
+            log.add(scan.time, result, watch.scan_seconds[-1], watch.waited_seconds[-1])
             session.observe(mapped)
         else:
             log.add(scan.time, None)
@@ -109,16 +105,18 @@ def replay(
             f"{recording.name}: no scan made it into a map: each has fewer than "
             f"{parameters.get('min_pointcloud_size')} returns, or the map was cleared or never started"
         )
-    return Drive(
-        recording,
-        parameters,
-        session,
-        recorder,
-        watch,
-        max(log.times) - min(log.times),
-        options.keep_attempts,
-        log,
-    )
+    duration = max(log.times) - min(log.times)
+    return Drive(recording, parameters, session, recorder, watch, duration, options.keep_attempts, log)
+
+
+def _map_timed(session: Session, scan: Scan, watch: Stopwatch) -> ScanResult:
+    """Maps a scan, and notes what it took and what of it was waiting for the global lane."""
+    started, waited = time.perf_counter(), session.mapper.work_seconds["waiting"]
+    result = session.add_scan(scan)
+    waited = session.mapper.work_seconds["waiting"] - waited
+    watch.scan_seconds.append(time.perf_counter() - started - waited)
+    watch.waited_seconds.append(waited)
+    return result
 
 
 def _until(scans: Iterator[Scan], seconds: float | None) -> Iterator[Scan]:

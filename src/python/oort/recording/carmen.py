@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from oort.errors import InputError
 from oort.inputs import plain_number, quoted
-from oort.poses import between
+from oort.poses import between, wrap_angle
 from oort.recording.limits import ScanLimits
 from oort.recording.packed import DAMAGED, PACKED
 from oort.recording.rig import is_parked
@@ -24,6 +24,8 @@ from oort.recording.types import Pose, Recording, Scan
 _FLASER_MAX_RANGE = 80.0  # [m]; these lasers report 81.83 and 81.91 for no return
 _SAMPLE = 400  # scans that are looked at more closely, spread over the log
 _MOUNT_TOLERANCE = (0.02, 0.02)  # [m], [rad]: logs are written with as few as two decimals
+_MOUNT_JITTER = (0.15, 0.15)  # [m], [rad] around the usual mount: 1 m/s and 1 rad/s with poses 0.15 s apart
+_MOUNT_OUTLIERS = 0.05  # share of the scans that may lie beyond
 _LONGEST_LINE, _LONGEST = 16 << 20, 4 << 30  # [bytes]
 _LONGEST_COUNT = 9  # digits
 _CUT = "The log is cut short here: copy it again, or remove this last line."
@@ -45,8 +47,8 @@ def read_carmen(
 
     Odometry that never changes is none.
 
-    The sensor's place on the base is the difference of the laser's and the robot's pose in the first scan; InputError
-    if it changes over the log. The time of a scan is the ipc timestamp.
+    The sensor's place on the base is the difference of the laser's and the robot's pose in the first scan, or in most
+    where it jitters; InputError if it changes over the log. The time of a scan is the ipc timestamp.
     """
     if message is not None and message not in _PARSERS:
         raise InputError(f"{path}: {message!r} is not a laser message of a CARMEN log; choose FLASER or ROBOTLASER1")
@@ -68,10 +70,13 @@ def read_carmen(
         notes.append(f"no odometry: {without}; the scans alone say how the base moves")
     if mount is not None:
         notes.append("the laser sits on the base where --mount says, whatever the log tells")
+    else:
+        mount, told = _mount(path, filled)
+        notes += told
     return Recording(
         name=name,
         kind="CARMEN log",
-        sensor_on_base=mount or _mount(path, filled),
+        sensor_on_base=mount,
         num_scans=len(scans),
         notes=tuple(notes + _notes(scans, others)),
         source=lambda: iter(scans),
@@ -231,19 +236,37 @@ def _ranges(fields: list[str]) -> NDArray[np.float32]:
         raise _MalformedError(f"has a reading that is no number ({error})") from None
 
 
-def _mount(path: Path, readings: list[_Reading]) -> Pose:
-    """T_base_sensor of the first scan, which must hold for all."""
+def _mount(path: Path, readings: list[_Reading]) -> tuple[Pose, list[str]]:
+    """T_base_sensor and notes: of the first scan, which must hold for all; else of most, which must nearly do.
+
+    A robot's and a laser's pose that were taken at different times disagree while it moves, around the true mount.
+    """
     mounts = between([reading.scan.odometry for reading in readings], [reading.laser for reading in readings])
-    changes = between(mounts[0], mounts)
-    shift, turn = float(np.hypot(changes[:, 0], changes[:, 1]).max()), float(np.abs(changes[:, 2]).max())
-    if shift > _MOUNT_TOLERANCE[0] or turn > _MOUNT_TOLERANCE[1]:
+    shifts, turns = _apart(mounts, mounts[0])
+    if float(shifts.max()) <= _MOUNT_TOLERANCE[0] and float(turns.max()) <= _MOUNT_TOLERANCE[1]:
+        x, y, theta = mounts[0].tolist()
+        return (x, y, theta), []
+    angle = float(np.angle(np.mean(np.exp(1j * mounts[:, 2]))))
+    usual = np.array([*np.median(mounts[:, :2], axis=0), angle + np.median(wrap_angle(mounts[:, 2] - angle))])
+    off = _apart(mounts, usual)
+    if np.mean((off[0] > _MOUNT_JITTER[0]) | (off[1] > _MOUNT_JITTER[1])) > _MOUNT_OUTLIERS:
         raise InputError(
             f"{path}: the laser does not stay in its place on the robot: its pose against the robot's changes by "
-            f"{shift:.2f} m and {math.degrees(turn):.1f} degrees. Its poses may be another program's corrected ones: "
-            "use the raw log"
+            f"{shifts.max():.2f} m and {math.degrees(turns.max()):.1f} degrees. Its poses may be another program's "
+            "corrected ones: use the raw log, or say where the laser sits with mount (--mount X Y THETA)"
         )
-    x, y, theta = mounts[0].tolist()
-    return x, y, theta
+    x, y, theta = usual.tolist()
+    return (x, y, theta), [
+        f"the laser's pose against the robot's changes by up to {shifts.max():.2f} m and "
+        f"{math.degrees(turns.max()):.1f} degrees, as where the two were taken at different times: it is taken to sit "
+        f"at ({x:.3f}, {y:.3f}, {math.degrees(theta):.1f} deg) as in most scans"
+    ]
+
+
+def _apart(mounts: NDArray[np.float64], mount: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """How far [m] and how much turned [rad] each is from one."""
+    changes = between(mount, mounts)
+    return np.hypot(changes[:, 0], changes[:, 1]), np.abs(changes[:, 2])
 
 
 def _why_without_odometry(scans: list[Scan], use_odometry: bool) -> str:

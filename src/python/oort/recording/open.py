@@ -75,22 +75,9 @@ def open_recording(
         for option, value in (("odom_frame", odom_frame), ("scan_frame", scan_frame)):
             if value is not None:
                 raise ParameterError(f"{path} is a CARMEN log: it has no frames, so leave out {option}")
-        if len(topics) > 1:
-            raise ParameterError(f"{path} is a CARMEN log: choose one of its messages with scan_topic, not {topics}")
         if imu_topic is not None:
             raise ParameterError(f"{path} is a CARMEN log: it has no IMU, so leave out imu_topic")
-        recording = read_carmen(
-            path,
-            name=recording_name(path),
-            message=topics[0] if topics else None,
-            mount=mount,
-            limits=limits,
-            use_odometry=parameters is None or bool(parameters.get("use_odometry")),
-        )
-        if parameters is not None and parameters.get("use_imu"):
-            note = "a CARMEN log has no IMU: use_imu has no effect, turns are those of odometry"
-            recording = replace(recording, notes=(*recording.notes, note))
-        return recording
+        return _open_carmen(path, topics, mount, limits, parameters)
     return read_bag(
         container,
         name=recording_name(container.path),
@@ -102,6 +89,26 @@ def open_recording(
         limits=limits,
         parameters=parameters or Parameters(),
     )
+
+
+def _open_carmen(
+    path: Path, messages: list[str], mount: Pose | None, limits: ScanLimits, parameters: Parameters | None
+) -> Recording:
+    """Opens a CARMEN log."""
+    if len(messages) > 1:
+        raise ParameterError(f"{path} is a CARMEN log: choose one of its messages with scan_topic, not {messages}")
+    recording = read_carmen(
+        path,
+        name=recording_name(path),
+        message=messages[0] if messages else None,
+        mount=mount,
+        limits=limits,
+        use_odometry=parameters is None or bool(parameters.get("use_odometry")),
+    )
+    if parameters is not None and parameters.get("use_imu"):
+        note = "a CARMEN log has no IMU: use_imu has no effect, turns are those of odometry"
+        recording = replace(recording, notes=(*recording.notes, note))
+    return recording
 
 
 def recording_name(path: Path) -> str:

@@ -116,27 +116,8 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
         notes.append(f"ignored {parent} -> {odom} of another program ({len(ignored.samples) // 4} transforms)")
     if survey.tf.unusable:
         notes.append(f"{survey.tf.unusable} transforms that are not finite or have no rotation were ignored")
-    if mount is not None:
-        lasers = {sensor: (mount, False)}
-        notes.append("the laser sits on the base where --mount says, upright, whatever transforms tell")
-    else:
-        if sensor == base:
-            notes.append(f"the scans are in the base's own frame: the sensor is taken to sit at {base}")
-        if not base:
-            raise InputError(
-                f"{origin} has no child_frame_id, so whose odometry it is, and where the laser sits there, is not "
-                "known; say where the laser sits with mount (--mount X Y THETA)"
-            )
-        lasers = {frame: to_plane(survey.tf.mount(base, frame), frame) for frame in frames}
-    if len(frames) > 1:
-        notes.append(
-            f"scans in {len(frames)} frames: {', '.join(frames)}; all lasers are used, each with its own mount, "
-            f"{sensor} first; --scan-frame chooses one"
-        )
-    for frame, (_, upside_down) in lasers.items():
-        if upside_down:
-            which = f"{frame} " if len(frames) > 1 else ""
-            notes.append(f"the laser {which}hangs upside down: its beams were turned round")
+    lasers, told = _mounts(survey, frames, base, origin, mount)
+    notes += told
     if survey.impossible_spans:
         notes.append(
             f"{survey.impossible_spans} scans have a time_increment that is no number or makes them last longer than "
@@ -154,6 +135,36 @@ def assemble(survey: Survey, odom_frame: str | None, mount: Pose | None, paramet
     if gap > _GAP:
         notes.append(f"the odometry is silent for up to {gap:.1f} s; poses in between are interpolated")
     return Rig(lasers, buffer, float(parameters.get("max_extrapolation")), tuple(notes))
+
+
+def _mounts(
+    survey: Survey, frames: list[str], base: str, origin: str, mount: Pose | None
+) -> tuple[dict[str, tuple[Pose, bool]], list[str]]:
+    """Where the laser of each frame sits on the base that odometry tells of, and what to note."""
+    sensor = frames[0]
+    if mount is not None:
+        return {sensor: (mount, False)}, [
+            "the laser sits on the base where --mount says, upright, whatever transforms tell"
+        ]
+    if not base:
+        raise InputError(
+            f"{origin} has no child_frame_id, so whose odometry it is, and where the laser sits there, is not "
+            "known; say where the laser sits with mount (--mount X Y THETA)"
+        )
+    notes = []
+    if sensor == base:
+        notes.append(f"the scans are in the base's own frame: the sensor is taken to sit at {base}")
+    lasers = {frame: to_plane(survey.tf.mount(base, frame), frame) for frame in frames}
+    if len(frames) > 1:
+        notes.append(
+            f"scans in {len(frames)} frames: {', '.join(frames)}; all lasers are used, each with its own mount, "
+            f"{sensor} first; --scan-frame chooses one"
+        )
+    for frame, (_, upside_down) in lasers.items():
+        if upside_down:
+            which = f"{frame} " if len(frames) > 1 else ""
+            notes.append(f"the laser {which}hangs upside down: its beams were turned round")
+    return lasers, notes
 
 
 def is_parked(samples: NDArray[np.float64]) -> bool:
