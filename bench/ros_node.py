@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the ROS node costs in real time: CPU, the delay from a scan to its map -> odom, and serialising the map.
 
-Plays a simulated home at the speed of life to a node in a roscore of its own, and prints a Markdown table. It goes by
-the wall's clock, as on a robot: /clock comes in steps of 10 ms, which would be measured instead of the node.
+Plays a simulated home at the speed of life, or ``--rate`` times as fast, to a node in a roscore of its own, and prints
+a Markdown table. It goes by the wall's clock, as on a robot: /clock comes in steps of 10 ms, which would be measured
+instead of the node.
 """
 
 import argparse
@@ -131,7 +132,7 @@ def spread(samples: Sequence[float]) -> str:
     return f"{p50:.1f} / {p99:.1f} / {max(samples):.1f}"
 
 
-def run(core: Core, folder: Path, seed: int, seconds: float) -> Iterator[tuple[str, str]]:
+def run(core: Core, folder: Path, seed: int, seconds: float, rate: float) -> Iterator[tuple[str, str]]:
     """Plays a drive to the node; what was measured, as names and values."""
     write_bag(simulate_drive(seed, SimulationConfig(minutes=seconds / 60.0)), folder / "home.bag")
     node = Node(core, "oort_slam", [sys.executable, "-m", "oort.node"], folder / "node.log", folder)
@@ -148,7 +149,8 @@ def run(core: Core, folder: Path, seed: int, seconds: float) -> Iterator[tuple[s
             before = time.monotonic()
             idle = cpu_each_second(pid, lambda: time.monotonic() < before + _IDLE)
             client.call("map/start", str(folder / "map"))
-            command = ["rosbag", "play", "--queue=10000", "--wait-for-subscribers", f"--duration={seconds}"]
+            command = ["rosbag", "play", "--queue=10000", "--wait-for-subscribers"]
+            command += [f"--duration={seconds}", f"--rate={rate}"]
             command += ["--topics", "/scan", "/tf", "/tf_static", "--bags", str(folder / "home.bag")]
             player = Node(core, "player", command, folder / "play.log", folder)
             try:
@@ -189,14 +191,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=1, help="of the simulated home (default: 1)")
     parser.add_argument("--seconds", type=float, default=150.0, help="how long to map (default: 150)")
+    parser.add_argument("--rate", type=float, default=1.0, help="how many times as fast (default: 1)")
     args = parser.parse_args(argv)
     what: dict[str, Any] = describe(None)
     with tempfile.TemporaryDirectory() as name, start_core(Path(name)) as core:
         os.environ.pop("ROS_HOSTNAME", None)  # it would win over ROS_IP
         os.environ.update(core.variables)
         load = os.getloadavg()
-        rows = list(run(core, Path(name), args.seed, args.seconds))
-    print(f"Home {args.seed} for {args.seconds:.0f} s at 1x; commit {what['commit']}, {what['parameters']}.")
+        rows = list(run(core, Path(name), args.seed, args.seconds, args.rate))
+    print(
+        f"Home {args.seed} for {args.seconds:.0f} s at {args.rate:g}x; commit {what['commit']}, {what['parameters']}."
+    )
     print(f"{what['machine']}; load before and after: {load[0]:.1f}, {os.getloadavg()[0]:.1f}.\n")
     print("| what | measured |\n|---|---|")
     for row in rows:
