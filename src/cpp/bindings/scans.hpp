@@ -9,7 +9,7 @@
 
 #include "bindings.hpp"
 #include "guarded.hpp"
-#include "oort/sensor/laser_scan.hpp"
+#include "oort/geometry/point_cloud.hpp"
 
 namespace oort {
 
