@@ -35,7 +35,7 @@ from node.rover import Rover
 from oort.node.messages import transform, yaw
 from oort.poses import Array, between, compose
 from oort.simulate import Drive, SimulationConfig, simulate_drive
-from oort.simulate.bag import BASE_FRAME
+from oort.simulate.messages import BASE_FRAME
 
 SLAM, LOCALIZER = "/oort_slam", "/oort_localizer"
 AGAIN = 60.0  # [s] of the drive for the localiser, and for going on

@@ -104,7 +104,7 @@ def test_the_same_seed_gives_the_same_bytes_and_another_another_way() -> None:
 
 def test_a_scene_can_be_chosen_at_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--seed", "1", "--scene", "corridor", "--fault", "bump", "--out", str(tmp_path)]) == 0
-    assert "1 rooms (corridor)" in capsys.readouterr().out
+    assert "1 room (corridor)" in capsys.readouterr().out
     assert {path.suffix for path in tmp_path.iterdir()} == {".bag", ".clf", ".tum", ".json", ".png"}
     assert (tmp_path / "corridor_1.clf").is_file()
 

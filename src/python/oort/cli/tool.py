@@ -4,18 +4,23 @@
 
 import argparse
 import io
+import json
 import math
 import os
 import re
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
+from typing import Any
 
 from oort.errors import OortError
 from oort.export.files import decimal
 
 UNCERTAIN = 3
 """The exit status of ``--strict`` where most of a drive is uncertain."""
+
+FAULT = 1
+"""The exit status after a fault of Oort's own."""
 
 _LONGEST = 2000  # characters of a message
 _DEBUG = "OORT_DEBUG"
@@ -52,7 +57,7 @@ def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int
         print(
             f"{name}: this is a fault of Oort's ({why}); please report it, with what {_DEBUG}=1 shows", file=sys.stderr
         )
-        return 1
+        return FAULT
     return status or 0
 
 
@@ -63,7 +68,43 @@ def _told(error: Exception, reading: str) -> str:
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST // 2]} [...] {text[-_LONGEST // 2 :]}"
 
 
-def add_pose_argument(parser: argparse.ArgumentParser, name: str, meaning: str) -> None:
+Arguments = argparse.ArgumentParser | argparse._ArgumentGroup
+"""what options are added to"""
+
+
+def add_json_argument(parser: Arguments) -> None:
+    """The option ``--json``, which every tool has; print_result() heeds it."""
+    parser.add_argument("--json", action="store_true", help="print JSON and nothing else but errors")
+
+
+def print_result(args: argparse.Namespace, result: Any, text: str) -> None:
+    """What a tool has to tell: as JSON if ``--json`` was given, else the text."""
+    print(json.dumps(_finite(result), indent=2, allow_nan=False) if args.json else text, flush=True)
+
+
+def print_steps(args: argparse.Namespace, steps: Generator[str, None, Any]) -> None:
+    """What a tool tells on its way, line by line as it comes; with ``--json`` only what it returns at the end."""
+    while True:
+        try:
+            line = next(steps)
+        except StopIteration as end:
+            if args.json:
+                print_result(args, end.value, "")
+            return
+        if not args.json:
+            print(line, flush=True)
+
+
+def _finite(value: Any) -> Any:
+    """JSON knows no infinities and no NaN: null stands for them."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    return [_finite(each) for each in value] if isinstance(value, list | tuple) else value
+
+
+def add_pose_argument(parser: Arguments, name: str, meaning: str) -> None:
     """An option that takes a pose, x, y [m] and theta [rad]; parse_arguments() must read it."""
     parser.add_argument(name, type=float, nargs=3, metavar=("X", "Y", "THETA"), help=meaning)
 

@@ -15,6 +15,7 @@ from oort.simulate.driver import STEP
 from oort.simulate.gyro import simulate_gyro
 from oort.simulate.home import Home, furnish_home, make_home
 from oort.simulate.odometry import simulate_odometry
+from oort.simulate.plan import Plan, furnish_plan
 from oort.simulate.planar import transform
 from oort.simulate.sensor import Sensor, cast_drive, measure
 
@@ -192,17 +193,20 @@ class Drive:
         return float(np.hypot(x, y)), float(heading)
 
 
-def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
+def simulate_drive(seed: int, config: SimulationConfig | None = None, plan: Plan | None = None) -> Drive:
     """Simulate the drive of a seed (not negative). The same seed and configuration give the same bytes.
 
+    With a ``plan`` it leads through that home instead of one that is made up.
+
     Home, way, person, odometry and sensor draw from streams of their own, so that, say, another odometry error leaves
-    home, way and scans as they are. Raises ValueError for a seed or a configuration that cannot be.
+    home, way and scans as they are. Raises ValueError for a seed or a configuration that cannot be, and InputError for
+    a plan that no robot can drive through.
     """
     config = config or SimulationConfig()
     if seed < 0:
         raise ValueError(f"seed {seed}: choose a whole number from 0")
     home_rng, way_rng, person_rng, odometry_rng, sensor_rng, fault_rng, gyro_rng = _streams(seed, config.way)
-    course = _make_course(seed, config, home_rng, way_rng, fault_rng)
+    course = _make_course(seed, config, plan, home_rng, way_rng, fault_rng)
     whole = course.motion.steps.shape[0] // STEPS_PER_SCAN * STEPS_PER_SCAN  # the last step is the last scan's
     all_poses, steps = course.motion.poses[: whole + 1], course.motion.steps[:whole]
     poses = all_poses[::STEPS_PER_SCAN]
@@ -239,6 +243,26 @@ def simulate_drive(seed: int, config: SimulationConfig | None = None) -> Drive:
         legs=transform(T_map_plan, legs),
         events=() if config.in_corridor else _events(odometry_stamps),
         fault_times=None if faulty is None else _seconds(odometry_stamps, faulty),
+    )
+
+
+def first_seconds(drive: Drive, seconds: float) -> Drive:
+    """The beginning of a drive, with the calls that were made in it."""
+    scans = min(len(drive.scan_stamps), 1 + int(seconds / (STEP * STEPS_PER_SCAN)))
+    steps = (scans - 1) * STEPS_PER_SCAN + 1
+    return replace(
+        drive,
+        scan_stamps=drive.scan_stamps[:scans],
+        ranges=drive.ranges[:scans],
+        rear_ranges=drive.rear_ranges[: scans - 1],
+        odometry_stamps=drive.odometry_stamps[:steps],
+        T_odom_base=drive.T_odom_base[:steps],
+        T_odom_base_at_scans=drive.T_odom_base_at_scans[:scans],
+        T_map_base=drive.T_map_base[:scans],
+        T_map_base_at_odometry=drive.T_map_base_at_odometry[:steps],
+        gyro=drive.gyro[:steps],
+        legs=drive.legs[:scans],
+        events=tuple(event for event in drive.events if event.t <= drive.scan_stamps[scans - 1] / 1e9),
     )
 
 
@@ -286,10 +310,16 @@ def _seconds(stamps: npt.NDArray[np.int64], steps: tuple[int, int]) -> tuple[flo
 _ODOMETRY_FAULTS = {"freeze": faults.freeze, "bump": faults.bump}
 
 
-def _make_course(seed: int, config: SimulationConfig, home_rng: Rng, way_rng: Rng, fault_rng: Rng) -> Course:
+def _make_course(
+    seed: int, config: SimulationConfig, plan: Plan | None, home_rng: Rng, way_rng: Rng, fault_rng: Rng
+) -> Course:
+    if plan is not None and (config.scene != "home" or config.moved > 0 or config.doors):
+        raise ValueError("a floor plan is taken as it is: choose no scene, and move no furniture or doors")
     if config.in_corridor:
         return drive_corridor(config.scene == "corridor-return", way_rng)
-    if config.moved > 0 or config.doors:
+    if plan is not None:
+        made = furnish_plan(plan, home_rng)
+    elif config.moved > 0 or config.doors:
         furnisher = furnish_home(home_rng)
         moving = way_rng.spawn(1)[0]
         if config.arrangement > 0:

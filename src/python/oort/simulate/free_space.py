@@ -24,7 +24,7 @@ BoolArray = npt.NDArray[np.bool_]
 class ClearanceGrid:
     """Distance [m] from each cell's centre to the nearest obstacle, 0 inside obstacles, at most ``FARTHEST``.
 
-    ``clearance`` is (rows, columns) with the row along y. All is blocked until ``open_rect`` opens it.
+    ``clearance`` is (rows, columns) with the row along y. All is blocked until it is opened.
     """
 
     def __init__(self, bounds: Rect) -> None:
@@ -55,19 +55,23 @@ class ClearanceGrid:
 
     def inside(self, rect: Rect) -> BoolArray:
         """Mask of the cells whose centres lie in a rectangle."""
-        x, y = self._centres((slice(None), slice(None)))
+        x, y = self.centres()
         return (x >= rect.x0) & (x <= rect.x1) & (y >= rect.y0) & (y <= rect.y1)
 
     def open_rect(self, rect: Rect) -> None:
         """Declare the cells of a rectangle free; obstacles are blocked afterwards."""
-        self.clearance[self.inside(rect)] = FARTHEST
+        self.open(self.inside(rect))
+
+    def open(self, free: BoolArray) -> None:
+        """Declare cells free; obstacles are blocked afterwards."""
+        self.clearance[free] = FARTHEST
 
     def block_segments(self, segments: Array) -> None:
         """Lower the clearance around line segments (n, 4) of x0, y0, x1, y1."""
         for x0, y0, x1, y1 in segments:
             rect = Rect(min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)).grown(FARTHEST, FARTHEST)
             window = self.window(rect)
-            x, y = self._centres(window)
+            x, y = self.centres(window)
             dx, dy = x1 - x0, y1 - y0
             along = np.clip(((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
             distance = np.hypot(x - x0 - along * dx, y - y0 - along * dy)
@@ -79,14 +83,14 @@ class ClearanceGrid:
         self.block_segments(np.hstack([corners, following]))
         low, high = corners.min(axis=0), corners.max(axis=0)
         window = self.window(Rect(low[0], low[1], high[0], high[1]))
-        x, y = self._centres(window)
+        x, y = self.centres(window)
         inside = np.ones(np.broadcast_shapes(x.shape, y.shape), dtype=bool)
         for (ax, ay), (bx, by) in zip(corners, following, strict=True):
             inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0.0
         self.clearance[window][inside] = 0.0
 
-    def _centres(self, window: tuple[slice, slice]) -> tuple[Array, Array]:
-        """Coordinates of the cells' centres of a window: x as a row, y as a column."""
+    def centres(self, window: tuple[slice, slice] = (slice(None), slice(None))) -> tuple[Array, Array]:
+        """Coordinates of the cells' centres of a window (default: all): x as a row, y as a column."""
         rows, columns = self.clearance.shape
         y = self._y0 + RESOLUTION * np.arange(rows, dtype=np.float64)[window[0], None]
         x = self._x0 + RESOLUTION * np.arange(columns, dtype=np.float64)[None, window[1]]

@@ -28,7 +28,7 @@ SHIFT = (0.3, 1.5)  # m that a piece is moved when a home is rearranged
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """A room: its kind and the corners (4, 2) of its floor."""
+    """A room: its kind and the corners (n, 2) of its floor, counter-clockwise."""
 
     kind: str
     corners: Array
@@ -36,7 +36,8 @@ class Room:
     @property
     def area(self) -> float:
         """Floor area in m^2, furniture included."""
-        return float(np.prod(np.hypot(*np.diff(self.corners[:3], axis=0).T)))
+        x, y = (self.corners - self.corners[0]).T
+        return 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))))
 
 
 @dataclass(frozen=True, eq=False)

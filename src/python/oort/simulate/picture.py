@@ -46,6 +46,8 @@ def draw_home(drive: Drive, path: Path) -> None:
         draw.polygon(pixels(room.corners), fill=FLOOR.get(room.kind, OTHER_FLOOR))
     for doorway in home.doorways:
         draw.polygon(pixels(doorway), fill=OTHER_FLOOR)
+    for segment in home.segments.reshape(-1, 2, 2):
+        draw.line(pixels(segment), fill=WALL, width=4)
     for piece in home.pieces:
         if not piece.solids:
             draw.polygon(pixels(piece.footprint), fill=FORBIDDEN)

@@ -13,6 +13,7 @@ LONGEST_SWEEP = 0.1  # s, from scan to scan
 DRIVERS = ("true", "turned-round", "mirrored")
 BODY_RANGE = 0.16  # m, of the robot's own body where the sensor sees it
 BODY_NOISE = 0.003  # m
+STEEPEST = np.radians(30.0)
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,11 @@ class Sensor:
     their times; or mirrored, each beam at the bearing of the one across."""
     body: float = 0.0
     """[rad] at either edge of the view where the sensor sees nothing but the robot itself"""
+    height: float = 0.2
+    """[m] above the floor"""
+    tilt: float = 0.0
+    """[rad] that the sensor looks down; below 0 up. Beams that look down end on the floor at the latest; walls and
+    furniture are as high as any beam."""
 
     def __post_init__(self) -> None:
         """Refuse what no sensor has."""
@@ -64,6 +70,10 @@ class Sensor:
             raise ValueError(f"driver {self.driver!r}: choose one of {', '.join(DRIVERS)}")
         if not 0.0 <= self.body < 0.5 * self.field_of_view:
             raise ValueError(f"{np.degrees(self.body):g} degrees of body: choose less than half of the view")
+        if not 0.0 < self.height < 10.0:
+            raise ValueError(f"a height of {self.height:g} m: choose one of 0 to 10")
+        if not abs(self.tilt) <= STEEPEST:
+            raise ValueError(f"a tilt of {np.degrees(self.tilt):g} degrees: choose one of -30 to 30")
         if not 0.0 < self.range_min < self.range_max < np.inf:
             raise ValueError(
                 f"ranges from {self.range_min:g} m to {self.range_max:g} m: choose a maximum above the minimum"
@@ -88,6 +98,16 @@ class Sensor:
     def angles(self) -> Array:
         """Bearings (beams,) in the sensor's frame, rad."""
         return self.angle_min + self.angle_increment * np.arange(self.beams, dtype=np.float64)
+
+    @property
+    def rays(self) -> tuple[Array, Array, Array]:
+        """Of each beam (beams,) its bearing on the floor plan [rad], its way there for each metre of its range, and the
+        sine of the angle by which it looks down.
+        """
+        if self.tilt == 0.0:
+            return self.angles, np.ones(self.beams), np.zeros(self.beams)
+        ahead, aside = np.cos(self.angles) * np.cos(self.tilt), np.sin(self.angles)
+        return np.arctan2(aside, ahead), np.hypot(aside, ahead), np.cos(self.angles) * np.sin(self.tilt)
 
 
 GRAZING = 0.15  # cosine of incidence below which dropouts rise
@@ -157,10 +177,15 @@ def cast_drive(
     """
     ranges = np.empty((len(poses), sensor.beams))
     incidence = np.empty_like(ranges)
+    bearings, stretch, down = sensor.rays
     for i, pose in enumerate(poses):
         seen = discs if np.isnan(legs[i, 0, 0]) else np.vstack([discs, np.column_stack([legs[i], [radius, radius]])])
-        bearings = pose[..., 2] + sensor.angles
-        ranges[i], incidence[i] = cast(segments, seen, pose[..., :2], bearings, sensor.range_max)
+        ranges[i], incidence[i] = cast(segments, seen, pose[..., :2], pose[..., 2] + bearings, sensor.range_max)
+    if sensor.tilt != 0.0:
+        ranges /= stretch
+        floor = np.divide(sensor.height, down, out=np.full(sensor.beams, np.inf), where=down > 0.0)
+        incidence = np.where(floor < ranges, down, incidence)
+        ranges = np.minimum(ranges, floor)
     return ranges, incidence
 
 

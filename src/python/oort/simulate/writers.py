@@ -1,16 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated drive as files: bag, CARMEN log, true trajectory, events and a picture, with the same stamps in all."""
+"""A simulated drive as files: bags, CARMEN log, true trajectory, events and a picture, with the same stamps in all."""
 
 import json
 import os
-from collections.abc import Callable, Iterator
+import shutil
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from oort.poses import compose
-from oort.simulate.bag import write_bag
+from oort.simulate.bag import write_bag, write_mcap, write_ros2_bag
 from oort.simulate.drive import Drive
 from oort.simulate.picture import draw_home
 
@@ -18,22 +19,24 @@ HOST = "simulation"
 LASER_TYPE = 99  # CARMEN's number of an unknown proximity sensor
 
 Write = Callable[[Drive, Path], None]
+DEFAULT_FORMATS = ("ros1", "carmen")
 
 
-def write_drive(drive: Drive, folder: Path, name: str, picture: bool = True) -> list[Path]:
-    """Write ``name``.bag, .clf, .truth.tum, .events.json and, if wanted, .png into a folder, which is made.
+def write_drive(
+    drive: Drive, folder: Path, name: str, picture: bool = True, formats: Sequence[str] = DEFAULT_FORMATS
+) -> list[Path]:
+    """Write the drive in some of FORMATS, with ``name``.truth.tum, .events.json and, if wanted, .png, into a folder.
 
-    There is no .clf of a sensor that sweeps, for a CARMEN log cannot tell when each beam was measured.
-    Files of the same name are replaced, each only when its successor is complete. Returns the paths. Raises OSError.
+    The folder is made. There is no CARMEN log of a sensor that sweeps, for it cannot tell when each beam was measured.
+    Files of the same name are replaced, each only when its successor is complete. Returns the paths. Raises OSError,
+    and ValueError for an unknown format.
     """
-    writes: dict[str, Write] = {
-        ".bag": write_bag,
-        ".clf": write_carmen,
-        ".truth.tum": write_truth,
-        ".events.json": write_events,
-    }
+    for unknown in set(formats) - set(FORMATS):
+        raise ValueError(f"format {unknown!r}: choose of {', '.join(FORMATS)}")
+    writes = dict(FORMATS[each] for each in FORMATS if each in formats)
     if drive.config.sensor.sweep_seconds > 0.0:
-        del writes[".clf"]
+        writes.pop(FORMATS["carmen"][0], None)
+    writes |= {".truth.tum": write_truth, ".events.json": write_events}
     if picture:
         writes[".png"] = draw_home
     folder.mkdir(parents=True, exist_ok=True)
@@ -88,12 +91,32 @@ def _seconds(stamp: np.int64) -> str:
 
 
 def _write_whole(drive: Drive, path: Path, write: Write) -> Path:
-    """Write beside the file first, so that an interruption leaves no half file under its name."""
-    partial = path.with_name(f".{path.name}.partial")
-    partial.unlink(missing_ok=True)
+    """Write in a folder beside the file first, so that an interruption leaves no half file under its name."""
+    beside = path.with_name(f".{path.name}.partial")
+    _remove(beside)  # of a call that was killed
+    beside.mkdir()
     try:
+        partial = beside / path.name
         write(drive, partial)
+        if path.is_dir() and partial.is_dir():
+            _remove(path)  # a folder cannot be put in the place of another
         os.replace(partial, path)
     finally:
-        partial.unlink(missing_ok=True)
+        _remove(beside)
     return path
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+FORMATS: dict[str, tuple[str, Write]] = {
+    "ros1": (".bag", write_bag),
+    "ros2": ("", write_ros2_bag),
+    "mcap": (".mcap", write_mcap),
+    "carmen": (".clf", write_carmen),
+}
+"""kinds of recordings, each with its ending; a ROS 2 bag is a folder"""
