@@ -99,6 +99,23 @@ def test_the_page_follows_the_robot_and_the_map_grows(page: Page, shown: Viewer,
     assert page.locator(".robot").count() == 0
 
 
+def test_mapping_that_ends_by_a_fault_is_told(
+    page: Page, shown: Viewer, live: LiveSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _open(page, shown)
+    live.call("map/start", [""])
+
+    def fail(_: object) -> None:
+        raise MemoryError("no memory is left")
+
+    monkeypatch.setattr(live.keeper, "tick", fail)
+    live.inbox.wake()
+    page.get_by_text("mapping ended by a fault of Oort's own (MemoryError: no memory is left)").wait_for()
+    assert page.locator("#tracking").inner_text() == "mapping ended"
+    with pytest.raises(oort.StateError, match="no memory is left"):
+        live.call("map/stop")
+
+
 def test_buttons_make_the_calls(page: Page, shown: Viewer, live: LiveSession) -> None:
     live.call("map/start", [""])
     driven(live)

@@ -7,14 +7,14 @@ import math
 import os
 import signal
 import sys
-import threading
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
 from oort._core import Parameters, normalise_map_path
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import parse_arguments, run_tool
-from oort.errors import InputError
+from oort.cli.tool import FAULT, add_json_argument, parse_arguments, print_result, run_tool
+from oort.errors import InputError, OortError
 from oort.live import Listener, LiveSession
 from oort.parameters import read_parameters
 from oort.recording import Recording
@@ -22,6 +22,10 @@ from oort.view import PORT, Viewer
 from oort.view.player import play
 
 _EXAMPLE = "Example: oort view drive.bag --speed 20, then open the address that it prints."
+
+
+_LOOK = 0.5  # [s] between looks whether mapping goes on
+_LAST_WORDS = 5.0  # [s] that the page still says why it does not
 
 
 class _Teller(Listener):
@@ -57,6 +61,7 @@ def _parser() -> argparse.ArgumentParser:
         "printed then holds a token, which OORT_VIEW_TOKEN may set)",
     )
     parser.add_argument("--control", action="store_true", help="let the page make calls: pause, docked, places, stop")
+    add_json_argument(parser)
     return parser
 
 
@@ -72,7 +77,7 @@ def _recording(args: argparse.Namespace, parameters: Parameters) -> Recording | 
     return recording
 
 
-def _run(args: argparse.Namespace) -> None:
+def _run(args: argparse.Namespace) -> int:
     if not args.speed > 0.0 or math.isnan(args.speed):
         raise InputError(f"--speed {args.speed:g}: it must be above 0")
     parameters = read_parameters(args.params)
@@ -82,25 +87,33 @@ def _run(args: argparse.Namespace) -> None:
     try:
         title = Path(args.input[0]).name if recording is None else recording.name
         with Viewer(live, title=title, address=args.address, port=args.port, control=args.control) as viewer:
-            print(f"open {viewer.url}", flush=True)
+            print_result(args, {"url": viewer.url}, f"open {viewer.url}")
             if recording is None:
                 live.call("map/load", [os.path.abspath(normalise_map_path(args.input[0]))])
             else:
                 _play(recording, live, args, viewer)
-            threading.Event().wait()
+            while not live.failure:
+                time.sleep(_LOOK)
+            time.sleep(_LAST_WORDS)
     except KeyboardInterrupt:
         pass
+    except OortError:
+        if not live.failure:
+            raise
+        time.sleep(_LAST_WORDS)
     finally:
         live.close()
+    return FAULT if live.failure else 0
 
 
 def _play(recording: Recording, live: LiveSession, args: argparse.Namespace, viewer: Viewer) -> None:
     path = os.path.abspath(args.map) if args.map else ""
     play(recording, live, args.speed, path, viewer.watch.tell_progress)
-    print(f"{recording.name} is mapped; the page stays until Ctrl-C", flush=True)
+    if not args.json:
+        print(f"{recording.name} is mapped; the page stays until Ctrl-C", flush=True)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """The command line; returns the exit status: 0 after Ctrl-C, or 2 for an error, which is printed."""
+    """The command line; returns the exit status: 0 after Ctrl-C, or that of run_tool()."""
     args = parse_arguments(_parser(), argv)
     return run_tool("oort view", lambda: _run(args), args.input[0])

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A session that keeps up with a robot: a queue, and threads for mapping, drawing and saving."""
 
+import logging
 import math
 import threading
 import time
@@ -85,7 +86,9 @@ class LiveSession:
         self._reported_frame: Pose | None = None  # seen from the frame of the latest scan's odometry
         self._last_scan_time = -math.inf
         self._closing = False
-        self._worker = threading.Thread(target=self._work, name="oort-map", daemon=True)
+        self.failure = ""
+        """why mapping ended that nobody ended: a fault of Oort's own, or memory that is used up; empty if it goes on"""
+        self._worker = threading.Thread(target=self._run, name="oort-map", daemon=True)
         self._worker.start()
 
     # ---- for any thread ----
@@ -185,6 +188,18 @@ class LiveSession:
         self.gallery.close()
 
     # ---- the mapping thread ----
+
+    def _run(self) -> None:
+        """Nobody must wait for a thread that is gone: who does hears why, and calls to come are refused."""
+        try:
+            self._work()
+        except Exception as error:
+            logging.getLogger("oort").debug("mapping ended", exc_info=True)
+            self.failure = f"mapping ended by a fault of Oort's own ({type(error).__name__}: {error})"
+            self._listener.trouble(self.failure)
+            self.inbox.close(StateError(self.failure))
+            if self._docking is not None:
+                self._docking.set_exception(StateError(self.failure))
 
     def _work(self) -> None:
         deadline = math.inf

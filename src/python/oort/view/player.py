@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable
 
+from oort.errors import OortError
 from oort.live import LiveSession
 from oort.recording import Recording, Scan
 from oort.session import State
@@ -24,7 +25,8 @@ def play(
     """Maps a recording ``speed`` times as fast as it was recorded, inf for as fast as can be, until the map is stopped.
 
     The map is saved at ``map_path`` if that is not empty. ``told`` hears what share was played.
-    Raises InputError for a recording that cannot be read, MapFileError where the map cannot be saved.
+    Raises InputError for a recording that cannot be read, MapFileError where the map cannot be saved, and OortError if
+    mapping ends by a fault of its own.
     """
     live.mount_sensor(recording.sensor_on_base)
     live.call("map/start", [map_path])
@@ -34,6 +36,8 @@ def play(
         begin = begin or (scan.time, now)
         due = begin[1] + (scan.time - begin[0]) / speed if math.isfinite(speed) else now
         while time.monotonic() < due or len(live.inbox) > _AHEAD:
+            if live.failure:
+                raise OortError(live.failure)
             time.sleep(min(_LOOK, max(due - time.monotonic(), 0.001)))
         if live.snapshot.state is State.NOT_MAPPING:
             return

@@ -69,6 +69,7 @@ class Watch:
             "scans": [figures.scans_mapped, figures.scans_arrived],
             "left_out": dict(figures.drops.counts),
             "troubles": [str(trouble) for trouble in live.troubles],
+            "failure": live.failure,
             "places": places,
             "areas": [{"kind": area.kind, "points": area.points} for area in areas_of(known)],
             "drawing": None if drawing is None or snapshot.num_nodes == 0 else drawing.revision,

@@ -25,8 +25,10 @@ class LiveView {
     document.title = `Oort: ${state.title}`;
     $("name").textContent = state.title;
     $("status").textContent = `${state.state.replace("_", " ")}: ${state.nodes} nodes, ${state.closures} new closures${state.path ? `, saved at ${state.path}` : ""}`;
-    $("tracking").textContent = state.tracking;
-    $("tracking").className = `badge ${state.tracking}`;
+    $("tracking").textContent = state.failure ? "mapping ended" : state.tracking;
+    $("tracking").className = `badge ${state.failure ? "lost" : state.tracking}`;
+    $("failure").textContent = state.failure;
+    $("failure").hidden = !state.failure;
     $("progress").hidden = state.progress === null;
     if (state.progress !== null) $("progress").firstElementChild.style.width = `${100 * state.progress}%`;
     this.figures(state);
