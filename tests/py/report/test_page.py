@@ -6,16 +6,18 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page
 
 from oort.cli.compare import main as compare
 from oort.cli.replay import main as replay
 from oort.errors import InputError
+from oort.poses import between
 from oort.report.arrays import unpack
 from oort.report.page import make_report_page, read_page_data
 from oort.simulate import Drive
-from oort.simulate.writers import write_carmen
+from oort.simulate.writers import write_carmen, write_truth
 
 _HOSTILE = "</script><img src=x onerror=document.title='owned'>"
 
@@ -103,6 +105,58 @@ def test_a_click_on_the_trajectory_sets_the_time(page: Page, run: Path) -> None:
     page.mouse.click(box["x"] + place[0], box["y"] + place[1])
     shown = int(page.locator("#time").input_value())
     assert abs(poses[shown, :2] - poses[third, :2]).max() < 0.3
+
+
+@pytest.fixture(scope="module")
+def judged(drive: Drive, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a replay of the same minute that knows the truth, and one relation."""
+    folder = tmp_path_factory.mktemp("judged")
+    write_carmen(drive, folder / "home.clf")
+    write_truth(drive, folder / "truth.tum")
+    times = [line.split()[0] for line in (folder / "truth.tum").read_text().splitlines()]
+    x, y, theta = between(drive.T_map_base[50], drive.T_map_base[500]).tolist()
+    x += 0.2  # told 20 cm wrong
+    (folder / "relations").write_text(f"{times[50]} {times[500]} {x} {y} 0 0 0 {theta}\n")
+    args = [str(folder / "home.clf"), "--until", "60", "--quiet", "--out", str(folder / "run")]
+    known = ["--truth", str(folder / "truth.tum"), "--relations", str(folder / "relations")]
+    assert replay([*args, *known]) == 0
+    return folder / "run"
+
+
+def test_the_truth_is_on_the_timeline_and_on_the_map(page: Page, judged: Path) -> None:
+    truth = json.loads((judged / "report.json").read_text())["truth"]
+    assert truth["ate"]["position_rmse"] < 0.02
+    assert truth["relations"]["translation_mean"] == pytest.approx(0.2, abs=0.03)
+    data = read_page_data(judged / "report.html")["truth"]
+    off, true = unpack(data["off"]), unpack(data["true"])
+    assert float(np.sqrt(np.mean(off**2))) == pytest.approx(truth["ate"]["position_rmse"], rel=1e-3)
+    poses = unpack(read_page_data(judged / "report.html")["samples"]["pose"])
+    np.testing.assert_allclose(np.hypot(*(true - poses[:, :2]).T), off, atol=1e-5)
+    _open(page, judged / "report.html")
+    assert page.locator("#charts canvas").count() == 4
+    assert "off the truth" in page.locator("#figures").inner_text()
+    page.locator("#time").focus()
+    page.locator("#time").press("End")
+    assert "off the truth" in page.locator("#now").inner_text()
+    assert page.get_by_label("true way", exact=True).is_checked()
+    before = page.locator("#map").screenshot()
+    page.get_by_label("errors, from the true way").check()
+    page.get_by_label("relations by error").check()
+    assert page.locator("#map").screenshot() != before
+
+
+def test_a_truth_of_another_drive_costs_no_result(
+    drive: Drive, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_carmen(drive, tmp_path / "home.clf")
+    (tmp_path / "other.tum").write_text("1.0 0 0 0 0 0 0 1\n2.0 1 0 0 0 0 0 1\n")
+    args = [str(tmp_path / "home.clf"), "--until", "20", "--quiet", "--out", str(tmp_path / "run")]
+    assert replay([*args, "--truth", str(tmp_path / "other.tum")]) == 2
+    assert "are the two files of the same recording" in capsys.readouterr().err
+    assert (tmp_path / "run/map.map_capnp").is_file()
+    assert (tmp_path / "run/report.html").is_file()
+    assert replay([*args, "--truth", str(tmp_path / "none.tum")]) == 2
+    assert "none.tum cannot be read" in capsys.readouterr().err
 
 
 def test_layers_are_switched_on_and_off(page: Page, run: Path) -> None:

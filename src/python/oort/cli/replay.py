@@ -11,8 +11,16 @@ from pathlib import Path
 
 from oort._core import Parameters, normalise_map_path
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import UNCERTAIN, add_checksum_argument, add_pose_argument, parse_arguments, run_tool
+from oort.cli.tool import (
+    UNCERTAIN,
+    add_checksum_argument,
+    add_json_argument,
+    add_pose_argument,
+    parse_arguments,
+    run_tool,
+)
 from oort.errors import InputError, OortError
+from oort.evaluation.truth import Truth
 from oort.events import read_events
 from oort.localization import find_start
 from oort.offline.replay import ReplayOptions, replay
@@ -32,13 +40,14 @@ def replay_to_folder(
     out: str | None = None,
     base: str | None = None,
     *,
+    truth: Truth | None = None,
     as_json: bool = False,
 ) -> Sequence[str]:
     """Replays a recording, writes what came of it into the folder ``out`` and the map to the path ``base``.
 
     They default to oort-out/<name of the recording> and ``out``/map. Unless quiet, the report is printed; ``as_json``
-    prints report.json. Returns the codes of what is wrong with the recording or the setup. Raises OortError, also where
-    the map to go on with would be overwritten.
+    prints report.json. With a ``truth`` the reports say how far the trajectory is off it. Returns the codes of what is
+    wrong with the recording or the setup. Raises OortError, also where the map to go on with would be overwritten.
     """
     folder = Path(out) if out else Path("oort-out") / recording.name
     map_path = base or str(folder.absolute() / "map")
@@ -57,7 +66,7 @@ def replay_to_folder(
     if not options.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
-    results = write_results(replay(recording, parameters, options), folder, map_path)
+    results = write_results(replay(recording, parameters, options), folder, map_path, truth)
     if not options.quiet:
         for note in results.report["notes"][len(recording.notes) :]:
             print(f"note: {note}", file=sys.stderr)
@@ -101,6 +110,10 @@ def _parser() -> argparse.ArgumentParser:
         "--no-odometry", action="store_true", help="ignore odometry: the scans alone say how the base moves"
     )
     parser.add_argument("--events", metavar="FILE", help="the service calls of the drive, a JSON list of t, call, args")
+    parser.add_argument(
+        "--truth", metavar="FILE", help="true poses of the base (TUM): the reports say how far it is off"
+    )
+    parser.add_argument("--relations", metavar="FILE", help="true relative poses, as for oort evaluate relations")
     parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
     parser.add_argument(
         "--closures", action="store_true", help="also write closures.csv and .png: each attempt to close a loop"
@@ -109,7 +122,7 @@ def _parser() -> argparse.ArgumentParser:
         "--strict", action="store_true", help=f"exit with {UNCERTAIN} if where the robot was is mostly uncertain"
     )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    parser.add_argument("--json", action="store_true", help="print report.json and nothing else but errors")
+    add_json_argument(parser)
     return parser
 
 
@@ -118,6 +131,8 @@ def _run(args: argparse.Namespace) -> int:
     if args.no_odometry:
         parameters.set("use_odometry", False)
     events = read_events(args.events) if args.events else []
+    truth = Truth(args.truth, args.relations)
+    truth.check()
     recording = recording_of(args, parameters)
     resume = None
     if args.resume:
@@ -134,7 +149,7 @@ def _run(args: argparse.Namespace) -> int:
         quiet=args.quiet or args.json,
         keep_attempts=args.closures,
     )
-    troubles = replay_to_folder(recording, parameters, options, args.out, args.map, as_json=args.json)
+    troubles = replay_to_folder(recording, parameters, options, args.out, args.map, truth=truth, as_json=args.json)
     return UNCERTAIN if args.strict and "uncertain" in troubles else 0
 
 

@@ -97,6 +97,13 @@ def relation_errors(
 
     Rows are NaN where a time is not in the trajectory. The file and what is raised are those of evaluate_relations.
     """
+    return compare_relations(trajectory, path, max_seconds=max_seconds)[1]
+
+
+def compare_relations(
+    trajectory: Trajectory, path: str | os.PathLike[str], *, max_seconds: float | None = None
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Which poses of the trajectory (n, 2) each relation is of, -1 for none, and relation_errors()."""
     relations = _read_relations(Path(path))
     if max_seconds is not None:
         relations = relations[np.abs(relations[:, 1] - relations[:, 0]) < max_seconds]
@@ -108,7 +115,7 @@ def relation_errors(
     errors = np.full((len(relations), 3), np.nan)
     estimated = between(trajectory.poses[ends[found, 0]], trajectory.poses[ends[found, 1]])
     errors[found] = between(relations[found][:, [2, 3, 7]], estimated)
-    return errors
+    return ends, errors
 
 
 def _read_relations(path: Path) -> NDArray[np.float64]:
@@ -147,18 +154,31 @@ def evaluate_ate(trajectory: Trajectory, truth: Trajectory) -> AteResult:
     The truth is interpolated at the trajectory's times, where its neighbours are at most 0.2 s apart. Raises
     InputError if more than 5 % of the poses have no truth.
     """
-    reference, found = _truth_at(trajectory.times, truth)
-    _check_missing(int(np.count_nonzero(~found)), len(found), "poses")
-    estimated, reference = trajectory.poses[found], reference[found]
-    errors = between(reference, compose(alignment(estimated, reference), estimated))
+    _, errors = compare_poses(trajectory, truth)
+    found = np.isfinite(errors[:, 0])
+    errors = errors[found]
     distances = np.hypot(errors[:, 0], errors[:, 1])
     return AteResult(
-        n=len(estimated),
+        n=len(errors),
         missing=int(np.count_nonzero(~found)),
         position_rmse=float(np.sqrt(np.mean(distances**2))),
         position_max=float(distances.max()),
         heading_rmse=math.degrees(float(np.sqrt(np.mean(errors[:, 2] ** 2)))),
     )
+
+
+def compare_poses(trajectory: Trajectory, truth: Trajectory) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The true poses (n, 3), moved onto the trajectory as evaluate_ate() does it, and the motion from each to the
+    trajectory's (n, 3), in m and rad. Rows are NaN where there is no truth. Raises what evaluate_ate() raises.
+    """
+    reference, found = _truth_at(trajectory.times, truth)
+    _check_missing(int(np.count_nonzero(~found)), len(found), "poses")
+    T_reference_estimated = alignment(trajectory.poses[found], reference[found])
+    errors = np.full((len(found), 3), np.nan)
+    errors[found] = between(reference[found], compose(T_reference_estimated, trajectory.poses[found]))
+    moved = np.full((len(found), 3), np.nan)
+    moved[found] = between(T_reference_estimated, reference[found])
+    return moved, errors
 
 
 def _truth_at(times: NDArray[np.float64], truth: Trajectory) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

@@ -15,7 +15,16 @@ from oort._core import SWITCH_ON, Map, Mapper, OccupancyGrid, Parameters, save_m
 from oort.diagnosis import Trouble
 from oort.evaluation.attempts import judge_attempts, write_attempts
 from oort.evaluation.histograms import make_histograms, panels
-from oort.export import PoseGraph, write_closures_picture, write_g2o, write_map_server, write_picture, write_tum
+from oort.evaluation.truth import Judgement, Truth
+from oort.export import (
+    PoseGraph,
+    Trajectory,
+    write_closures_picture,
+    write_g2o,
+    write_map_server,
+    write_picture,
+    write_tum,
+)
 from oort.export.chart import write_chart
 from oort.export.files import write_atomically
 from oort.offline.beside import Beside, set_beside
@@ -70,9 +79,10 @@ class Results:
     """a sentence for each file that could not be written"""
 
 
-def write_results(drive: Drive, out: Path, map_path: str) -> Results:
+def write_results(drive: Drive, out: Path, map_path: str, truth: Truth | None = None) -> Results:
     """Writes the map, and trajectory.tum, map.pgm, .yaml and .png, histograms.png, graph.g2o, report.json to a folder.
 
+    With a ``truth`` the reports say how far the trajectory is off it.
     If the drive keeps attempts, closures.csv and closures.png too. What cannot be written is told in the results, and
     all else is written all the same. Raises OSError if there can be no folder.
     """
@@ -90,11 +100,21 @@ def write_results(drive: Drive, out: Path, map_path: str) -> Results:
     histograms = _histograms(drive, map_)
     if panels_ := panels(histograms):
         outputs.write("histograms.png", lambda: write_chart(out / "histograms.png", panels_))
+    judgement = _judge(drive, base_poses, truth, outputs) if truth else None
     report = _report(drive, map_, grid, histograms, [*notes, *outputs.failed])
+    if judgement is not None:
+        report["truth"] = judgement.figures
     text = json.dumps(report, indent=2) + "\n"
     outputs.write("report.json", lambda: write_atomically(out / "report.json", text.encode()))
-    outputs.write("report.html", lambda: _write_page(out / "report.html", drive, report, map_, grid, base_poses))
+    page = out / "report.html"
+    outputs.write("report.html", lambda: _write_page(page, drive, report, map_, grid, base_poses, judgement))
     return Results(report, outputs.written, outputs.failed)
+
+
+def _judge(drive: Drive, base_poses: NDArray[np.float64], truth: Truth, outputs: Outputs) -> Judgement | None:
+    trajectory = Trajectory(tuple(drive.recorder.stamps), base_poses)
+    judged = outputs.work_out("how far the trajectory is off the truth", lambda: truth.judge(trajectory))
+    return judged if isinstance(judged, Judgement) else None
 
 
 def _write_pictures(
@@ -170,9 +190,10 @@ def _write_page(
     map_: Map,
     grid: OccupancyGrid | None,
     base_poses: NDArray[np.float64],
+    judgement: Judgement | None,
 ) -> None:
     attempts = judge_attempts(drive.session.mapper.closure_attempts, map_)
-    data = run_page_data(report, drive.parameters, map_, grid, attempts, drive.log, base_poses)
+    data = run_page_data(report, drive.parameters, map_, grid, attempts, drive.log, base_poses, judgement)
     write_atomically(path, make_report_page(f"Oort: {drive.recording.name}", data))
 
 

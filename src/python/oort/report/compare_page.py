@@ -13,9 +13,9 @@ from oort.report.page import make_page
 _FRAMES = 1.0  # [s] between samples of two runs that still mean the same scan
 
 
-def make_compare_page(a: Mapping[str, Any], b: Mapping[str, Any], names: tuple[str, str]) -> bytes:
-    """The page for the data of two reports; ``names`` tell them apart."""
-    data = {
+def compare_page_data(a: Mapping[str, Any], b: Mapping[str, Any], names: tuple[str, str]) -> dict[str, Any]:
+    """What the page for the data of two reports shows; ``names`` tell them apart."""
+    return {
         "page_version": a["page_version"],
         "names": list(names),
         "runs": [dict(a), dict(b)],
@@ -23,8 +23,12 @@ def make_compare_page(a: Mapping[str, Any], b: Mapping[str, Any], names: tuple[s
         "parameters": [row for row in _side_by_side(a["parameters"], b["parameters"]) if row[1] != row[2]],
         "apart": trajectories_apart(a, b),
     }
+
+
+def make_compare_page(data: Mapping[str, Any]) -> bytes:
+    """The page of the data."""
     scripts = ("data.js", "map.js", "timeline.js", "compare.js")
-    return make_page("compare.html", scripts, f"Oort: {names[0]} and {names[1]}", data)
+    return make_page("compare.html", scripts, f"Oort: {' and '.join(data['names'])}", data)
 
 
 def trajectories_apart(a: Mapping[str, Any], b: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from oort._core import SWITCH_ON, Map, OccupancyGrid
 from oort.areas import areas_of_map, is_area
 from oort.errors import OortError
 from oort.evaluation.attempts import Attempt
+from oort.evaluation.truth import Judgement
 from oort.export.map_server import grey_picture
 from oort.export.named_rooms import named_rooms
 from oort.export.walls import fit_walls
@@ -26,6 +27,9 @@ MOST_REJECTED = 3000
 
 MOST_NODES_OF_ROOMS = 1000
 """of a map that the page shows rooms of: they are found in homes, and fitting walls takes seconds beyond"""
+
+MOST_RELATIONS = 1000
+"""that the page shows: those that are farthest off"""
 
 _STEP = 0.005  # [m] of the points of scans
 _MOST_POINTS = 1_500_000  # of all scans together: some 6 MB
@@ -124,6 +128,24 @@ def room_layer(map_: Map, grid: OccupancyGrid | None) -> list[dict[str, Any]]:
     except OortError:
         return []
     return [{"label": named.label, "outline": np.round(named.room.outline, 3).tolist()} for named in rooms]
+
+
+def truth_layer(judgement: Judgement, rows: NDArray[np.int64], base_poses: NDArray[np.float64]) -> dict[str, Any]:
+    """How far each row of the timeline is off the truth, and the worst relations; ``rows`` are their first scans."""
+    shown = np.argsort(-judgement.relation_off, kind="stable")[:MOST_RELATIONS]
+    ends = base_poses[judgement.relation_ends[shown], :2]
+    row_of = np.searchsorted(rows, judgement.relation_ends[:, 1], side="right") - 1
+    worst = np.full(len(rows), np.nan)
+    np.fmax.at(worst, row_of, judgement.relation_off)
+    return {
+        "true": None if judgement.true is None else pack(judgement.true[rows, :2], "f4"),
+        "off": None if judgement.off is None else pack(judgement.off[rows], "f4"),
+        "turned": None if judgement.turned is None else pack(judgement.turned[rows], "f4"),
+        "relation_off_at": pack(worst, "f4") if len(judgement.relation_off) else None,
+        "relation_ends": pack(ends.reshape(-1, 4), "f4"),
+        "relation_off": pack(judgement.relation_off[shown], "f4"),
+        "relations": len(judgement.relation_off),
+    }
 
 
 def _moved(

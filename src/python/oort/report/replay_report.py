@@ -74,7 +74,19 @@ def table_rows(report: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("times real time", f"{timings['times_real_time']:.0f}"),
         ("CPU seconds", f"{timings['cpu_seconds']:.2f}{_work(timings['cpu_seconds_by_work'])}"),
         ("peak memory", f"{timings['peak_memory_mb']:.0f} MB"),
+        *_truth(report.get("truth", {})),
     ]
+
+
+def _truth(truth: Mapping[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    if ate := truth.get("ate"):
+        turned = f"heading {ate['heading_rmse']:.2f} deg"
+        rows.append(("off the truth", f"{ate['position_rmse']:.4f} m, at most {ate['position_max']:.4f} m; {turned}"))
+    if relations := truth.get("relations"):
+        spread = f"at most {relations['translation_max']:.3f} m; {relations['rotation_mean']:.3f} deg"
+        rows.append(("off the relations", f"{relations['translation_mean']:.4f} m on average, {spread}"))
+    return rows
 
 
 def _closures(counts: Mapping[str, Any]) -> str:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from oort._core import Map, OccupancyGrid, Parameters, parameter_table
 from oort.evaluation.attempts import Attempt
+from oort.evaluation.truth import Judgement
 from oort.report.arrays import pack
 from oort.report.layers import (
     area_layer,
@@ -19,6 +20,7 @@ from oort.report.layers import (
     node_layer,
     place_layer,
     room_layer,
+    truth_layer,
 )
 from oort.report.replay_report import table_rows
 from oort.report.scan_log import TRACKING_STATES, ScanLog, thinned
@@ -38,6 +40,7 @@ def run_page_data(
     attempts: Sequence[Attempt],
     log: ScanLog,
     base_poses: NDArray[np.float64],
+    judgement: Judgement | None = None,
 ) -> dict[str, Any]:
     """What the page of a run shows. ``base_poses`` are T_map_base, (n, 3), of the scans in ``log``."""
     return {
@@ -58,6 +61,7 @@ def run_page_data(
         "rooms": room_layer(map_, grid),
         "areas": area_layer(map_),
         "samples": _samples(log, base_poses),
+        "truth": None if judgement is None else truth_layer(judgement, thinned(log, MOST_SAMPLES)[0], base_poses),
     }
 
 

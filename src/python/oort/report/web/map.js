@@ -9,12 +9,16 @@ const COLOURS = {
   rejected: "#7c6bd6",
   node: "#34507a",
   place: "#b45309",
+  truth: "#111827",
+  error: "#e11d48",
   no_go: "#dc2626",
   scans: ["#0b6bcb", "#d6336c"],
 };
 const ROOM_COLOURS = ["#2563eb", "#059669", "#d97706", "#7c3aed", "#db2777", "#0891b2", "#65a30d", "#ea580c"];
 const TIME_COLOURS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
 const SIGMA_COLOURS = ["#1a9850", "#91cf60", "#fee08b", "#fc8d59", "#d73027"]; // of chain edges, the surest first
+const ERROR_SCALES = [1, 2, 5, 10, 20, 50, 100];
+const LONGEST_ERROR = 0.6; // [m] that the longest error is drawn as, at most
 const SIGMA_LIMITS = [0.01, 0.03, 0.1, 0.3]; // [m]
 
 // The map of a run to pan and zoom, with its layers. Metres are Leaflet's plain coordinates: [y, x].
@@ -37,6 +41,7 @@ class MapView {
     this.addNodes();
     this.addPlaces();
     this.fit();
+    this.addTruth(); // a dashed line can only be added once it is known where the map looks
   }
 
   fit() {
@@ -172,6 +177,31 @@ class MapView {
       group.addLayer(L.marker([place.pose[1], place.pose[0]], { icon, keyboard: true, alt: `${place.space}/${place.id}` }));
     }
     this.add("places", COLOURS.place, group, true);
+  }
+
+  // The true way, how far each pose is from it, and relations that are off; a run without a truth has none.
+  addTruth() {
+    const truth = this.data.truth ?? null;
+    if (truth === null) return;
+    if (truth.true !== null) {
+      const poses = this.data.samples.pose, { true: there, off } = truth;
+      const known = Array.from(off.keys()).filter((k) => !Number.isNaN(off[k]));
+      const at = (k) => [there[2 * k + 1], there[2 * k]];
+      this.add("true way", COLOURS.truth, L.polyline(known.map(at), { color: COLOURS.truth, weight: 1.5, dashArray: "4 4", interactive: false }), true);
+      const worst = known.reduce((most, k) => Math.max(most, off[k]), 0);
+      const times = ERROR_SCALES.findLast((scale) => scale * worst <= LONGEST_ERROR) ?? 1;
+      const vector = (k) => [at(k), [0, 1].map((axis) => there[2 * k + 1 - axis] + times * (poses[3 * k + 1 - axis] - there[2 * k + 1 - axis]))];
+      this.add(`errors, from the true way, ${times} times as long`, COLOURS.error, L.polyline(known.map(vector), { color: COLOURS.error, weight: 1, interactive: false }), false);
+    }
+    const { relation_ends: ends, relation_off: off } = truth;
+    if (!off.length) return;
+    const group = L.layerGroup();
+    for (let k = off.length - 1; k >= 0; --k) {
+      const above = SIGMA_LIMITS.filter((limit) => off[k] > limit).length;
+      const line = [[ends[4 * k + 1], ends[4 * k]], [ends[4 * k + 3], ends[4 * k + 2]]];
+      group.addLayer(L.polyline(line, { color: SIGMA_COLOURS[above], weight: 2, interactive: false }));
+    }
+    this.add(`relations by error (green 1 cm, red 30 cm), the worst ${off.length} of ${truth.relations}`, SIGMA_COLOURS[3], group, false);
   }
 
   // The points of a node's scan, placed by a pose.

@@ -23,7 +23,7 @@ async function main() {
   view = new MapView(document.querySelector("#map"), data);
   view.control(document.querySelector("#layers"));
   document.querySelector("#fit").addEventListener("click", () => view.fit());
-  const timeline = new Timeline(document.querySelector("#charts"), document.querySelector("#time"), document.querySelector("#now"), data.samples, data.odometry_faults.first);
+  const timeline = new Timeline(document.querySelector("#charts"), document.querySelector("#time"), document.querySelector("#now"), data.samples, data.odometry_faults.first, data.truth);
   const closures = new Closures(view, document.querySelector("#closure-list"), document.querySelector("#verdict"), document.querySelector("#details"), document.querySelector("#overlay"));
   timeline.onTime = (sample) => data.samples.time.length && view.showRobot(sample);
   view.onTime = (sample) => timeline.select(sample);

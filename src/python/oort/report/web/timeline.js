@@ -4,8 +4,8 @@
 
 // Charts over time with one cursor, linked with a slider; onTime is told of the sample under the cursor.
 class Timeline {
-  constructor(place, slider, output, samples, faults) {
-    Object.assign(this, { samples, slider, output, faults, charts: [], onTime: () => {} });
+  constructor(place, slider, output, samples, faults, truth = null) {
+    Object.assign(this, { samples, slider, output, faults, truth, charts: [], onTime: () => {} });
     const count = samples.time.length;
     slider.max = Math.max(0, count - 1);
     slider.addEventListener("input", () => this.select(Number(slider.value)));
@@ -18,6 +18,16 @@ class Timeline {
     this.chart(place, "share of the returns on the local map (inlier ratio)", [x, plain(samples.inlier_ratio)], [
       { label: "inlier ratio", stroke: "#0b8043", width: 1, value: (_, v) => (v === null ? "–" : v.toFixed(3)) },
     ], [0, 1]);
+    if (truth !== null && truth.off !== null) {
+      this.chart(place, "off the truth [m]", [x, plain(truth.off)], [
+        { label: "off", stroke: "#e11d48", width: 1, value: (_, v) => (v === null ? "–" : `${v.toFixed(4)} m`) },
+      ]);
+    }
+    if (truth !== null && truth.relation_off_at !== null) {
+      this.chart(place, "error of the relations that end there, the worst [m]", [x, plain(truth.relation_off_at)], [
+        { label: "error", stroke: "#e11d48", width: 0, points: { show: true, size: 4 }, value: (_, v) => (v === null ? "–" : `${v.toFixed(3)} m`) },
+      ]);
+    }
     addEventListener("resize", () => this.charts.forEach((chart) => chart.setSize({ width: place.clientWidth, height: 150 })));
   }
 
@@ -74,7 +84,9 @@ class Timeline {
     const { time, state, states, inlier_ratio } = this.samples;
     this.slider.value = sample;
     const ratio = Number.isNaN(inlier_ratio[sample]) ? "not matched" : `inlier ratio ${inlier_ratio[sample].toFixed(3)}`;
-    this.output.textContent = time.length ? `${seconds(time[sample])}: ${states[state[sample]]}, ${ratio}` : "no scan";
+    const off = this.truth?.off ?? null;
+    const told = off === null || Number.isNaN(off[sample]) ? "" : `, ${off[sample].toFixed(3)} m and ${this.truth.turned[sample].toFixed(2)}° off the truth`;
+    this.output.textContent = time.length ? `${seconds(time[sample])}: ${states[state[sample]]}, ${ratio}${told}` : "no scan";
     this.onTime(sample);
   }
 }
