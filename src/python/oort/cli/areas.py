@@ -3,11 +3,10 @@
 """``oort areas MAP``: areas and lines of a saved map where the robot shall not go."""
 
 import argparse
-import json
 from collections.abc import Sequence
 
 from oort.areas import FEWEST, Area, areas_of_map, make_area
-from oort.cli.tool import add_checksum_argument, parse_arguments, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, parse_arguments, print_result, run_tool
 from oort.errors import InputError
 from oort.parameters import read_parameters
 from oort.saved_maps import open_map
@@ -26,7 +25,7 @@ def _parser() -> argparse.ArgumentParser:
         "--points", nargs="+", type=float, default=[], metavar="X", help="of the one to add: X Y X Y ..., metres"
     )
     parser.add_argument("--remove", nargs=2, metavar=("KIND", "NAME"), help="forget one")
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_json_argument(parser)
     add_checksum_argument(parser)
     return parser
 
@@ -54,14 +53,8 @@ def _run(args: argparse.Namespace) -> None:
     if args.add or args.remove:
         _change(args)
     areas = areas_of_map(open_map(args.map, ignore_checksum=args.ignore_checksum))
-    if args.json:
-        told = [{"kind": area.kind, "name": area.name, "points": area.points} for area in areas]
-        print(json.dumps(told, indent=2))
-        return
-    for area in areas:
-        print(_line(area))
-    if not areas:
-        print(f"{args.map}: no areas")
+    told = [{"kind": area.kind, "name": area.name, "points": area.points} for area in areas]
+    print_result(args, told, "\n".join(map(_line, areas)) or f"{args.map}: no areas")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

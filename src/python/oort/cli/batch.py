@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from oort.cli.tool import add_worker_arguments, run_tool
+from oort.cli.tool import add_json_argument, add_worker_arguments, print_result, run_tool
 from oort.errors import InputError
 from oort.export.files import write_atomically
 from oort.offline.batch import Outcome, make_jobs, run_batch, write_table
@@ -28,6 +28,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", metavar="DIR", default="oort-batch", help="where all goes (default: oort-batch)")
     add_worker_arguments(parser)
     parser.add_argument("--params", metavar="FILE", help="parameters for all (default: the packaged params.json)")
+    add_json_argument(parser)
     return parser
 
 
@@ -45,12 +46,13 @@ def _run(args: argparse.Namespace) -> None:
     outcomes: list[Outcome] = []
     for outcome in run_batch(jobs, args.jobs, args.cluster):
         outcomes.append(outcome)
-        _tell(outcome, len(outcomes), len(jobs))
+        if not args.json:
+            _tell(outcome, len(outcomes), len(jobs))
     write_table(outcomes, out)
     rows = [{"name": Path(o.folder).name, **asdict(o)} for o in sorted(outcomes, key=lambda o: o.recording)]
     write_atomically(out / "index.html", make_index_page(rows))
     failed = sum(outcome.error is not None for outcome in outcomes)
-    print(f"{len(outcomes) - failed} of {len(outcomes)} mapped; open {out / 'index.html'}")
+    print_result(args, rows, f"{len(outcomes) - failed} of {len(outcomes)} mapped; open {out / 'index.html'}")
     if failed == len(outcomes):
         raise InputError("no recording could be mapped")
 

@@ -3,11 +3,10 @@
 """``oort check INPUT``: says what is wrong with a recording or a robot's setup, without keeping a map."""
 
 import argparse
-import json
 from collections.abc import Sequence
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import UNCERTAIN, parse_arguments, run_tool
+from oort.cli.tool import UNCERTAIN, add_json_argument, parse_arguments, print_result, run_tool
 from oort.offline.replay import ReplayOptions, replay
 from oort.parameters import read_parameters
 
@@ -25,7 +24,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--strict", action="store_true", help=f"exit with {UNCERTAIN} if where the robot was is mostly uncertain"
     )
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_json_argument(parser)
     return parser
 
 
@@ -34,16 +33,11 @@ def _run(args: argparse.Namespace) -> int:
     recording = recording_of(args, parameters)
     drive = replay(recording, parameters, ReplayOptions(until=args.until, quiet=args.json))
     troubles = drive.troubles
-    if args.json:
-        told = {"input": recording.name, "notes": recording.notes, "troubles": [each.to_dict() for each in troubles]}
-        print(json.dumps(told, indent=2))
-    else:
-        for note in recording.notes:
-            print(f"note: {note}")
-        for trouble in troubles:
-            print(f"- {trouble}")
-        if not troubles:
-            print("nothing is wrong, as far as the drive shows")
+    told = {"input": recording.name, "notes": recording.notes, "troubles": [each.to_dict() for each in troubles]}
+    lines = [*(f"note: {note}" for note in recording.notes), *(f"- {trouble}" for trouble in troubles)]
+    if not troubles:
+        lines.append("nothing is wrong, as far as the drive shows")
+    print_result(args, told, "\n".join(lines))
     return UNCERTAIN if args.strict and any(trouble.code == "uncertain" for trouble in troubles) else 0
 
 

@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import run_tool
+from oort.cli.tool import add_json_argument, print_result, run_tool
 from oort.offline.compare import compare
 
 
@@ -18,10 +18,16 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("a", metavar="A", help="the folder of a replay, or its report.html")
     parser.add_argument("b", metavar="B", help="another one")
     parser.add_argument("--out", metavar="FILE", default="compare.html", help="the page (default: compare.html)")
+    add_json_argument(parser)
     return parser
+
+
+def _run(args: argparse.Namespace) -> None:
+    comparison = compare(args.a, args.b, args.out)
+    print_result(args, comparison, f"open {args.out}")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     args = _parser().parse_args(argv)
-    return run_tool("oort compare", lambda: print(f"open {compare(args.a, args.b, args.out)}"))
+    return run_tool("oort compare", lambda: _run(args))

@@ -6,7 +6,7 @@ import argparse
 import importlib
 from collections.abc import Mapping, Sequence
 
-from oort.cli.tool import run_tool
+from oort.cli.tool import add_json_argument, print_result, run_tool
 from oort.errors import OortError
 
 _SHELLS = ("bash", "zsh", "tcsh")
@@ -19,6 +19,7 @@ def _parser() -> argparse.ArgumentParser:
         'Example: eval "$(oort completion bash)"',
     )
     parser.add_argument("shell", choices=_SHELLS, help="whose script")
+    add_json_argument(parser)
     return parser
 
 
@@ -39,7 +40,8 @@ def _run(args: argparse.Namespace) -> None:
         import shtab
     except ImportError:
         raise OortError("completion needs the package shtab: pip install 'oort[completion]'") from None
-    print(shtab.complete(whole_parser(TOOLS), args.shell))
+    script = shtab.complete(whole_parser(TOOLS), args.shell)
+    print_result(args, {"shell": args.shell, "script": script}, script)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -6,11 +6,10 @@
 """
 
 import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from oort.cli.tool import add_checksum_argument, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.evaluation.ground_truth import RelationLimits, autogenerate_relations, write_relations
 from oort.evaluation.trajectories import AteResult, RelationsResult, evaluate_ate, evaluate_relations
 from oort.export import read_tum
@@ -46,12 +45,13 @@ def _parser() -> argparse.ArgumentParser:
     ate = commands.add_parser("ate", help="errors of poses after the best rigid alignment")
     for command in (relations, ate):
         command.add_argument("trajectory", metavar="TRAJ", help="the trajectory of the robot's base, in the TUM format")
-        command.add_argument("--json", action="store_true", help="print JSON")
     relations.add_argument("reference", metavar="FILE", help="lines t1 t2 x y z roll pitch yaw")
     relations.add_argument("--max-seconds", type=float, help="only relations over less than this time [s]")
     ate.add_argument("reference", metavar="TRUTH", help="the true trajectory, in the TUM format")
     autogenerate = commands.add_parser("autogenerate", help="relations from the closures of a solved map")
     _add_limits(autogenerate)
+    for command in (relations, ate, autogenerate):
+        add_json_argument(command)
     return parser
 
 
@@ -92,18 +92,25 @@ def _add_limits(command: argparse.ArgumentParser) -> None:
     add_checksum_argument(command)
 
 
-def _autogenerate(arguments: argparse.Namespace) -> str:
-    """Writes the relations that the command line asks for; returns what to print. Raises OortError."""
+def _autogenerate(arguments: argparse.Namespace) -> None:
+    """Writes the relations that the command line asks for, and tells of them. Raises OortError."""
     limits = RelationLimits(
         arguments.min_covered_distance, arguments.outlier_threshold_meters, arguments.outlier_threshold_radians
     )
     map_ = open_map(arguments.map, ignore_checksum=arguments.ignore_checksum)
     truth = autogenerate_relations(map_, arguments.sensor_on_base, limits)
     write_relations(arguments.reference, truth.relations)
-    return (
-        f"relations    {len(truth.relations)} of {truth.closures} closures\n"
-        f"left out     {truth.switched_off} switched off  {truth.too_short} too short  "
-        f"{truth.outliers} outliers  {truth.repeated} repeated"
+    left_out = {
+        "switched_off": truth.switched_off,
+        "too_short": truth.too_short,
+        "outliers": truth.outliers,
+        "repeated": truth.repeated,
+    }
+    listed = "  ".join(f"{count} {reason.replace('_', ' ')}" for reason, count in left_out.items())
+    print_result(
+        arguments,
+        {"relations": len(truth.relations), "closures": truth.closures, "left_out": left_out},
+        f"relations    {len(truth.relations)} of {truth.closures} closures\nleft out     {listed}",
     )
 
 
@@ -122,7 +129,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(arguments: argparse.Namespace) -> None:
     if arguments.command == "autogenerate":
-        print(_autogenerate(arguments))
+        _autogenerate(arguments)
         return
     result = _compare(arguments)
-    print(json.dumps(asdict(result), indent=2, allow_nan=False) if arguments.json else _format(result))
+    print_result(arguments, asdict(result), _format(result))

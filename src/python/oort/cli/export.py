@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.offline.export import FORMATS, export
 from oort.parameters import read_parameters
 from oort.saved_maps import open_map
@@ -24,12 +24,14 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("out", metavar="OUT", help="the file to write")
     parser.add_argument("--params", metavar="FILE", help="parameters of drawing (default: the packaged params.json)")
     add_checksum_argument(parser)
+    add_json_argument(parser)
     return parser
 
 
 def _run(args: argparse.Namespace) -> None:
     map_ = open_map(args.map, ignore_checksum=args.ignore_checksum)
-    print(f"wrote {export(map_, read_parameters(args.params), args.format, args.out)}")
+    written = export(map_, read_parameters(args.params), args.format, args.out)
+    print_result(args, {"written": written}, f"wrote {' '.join(written)}")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

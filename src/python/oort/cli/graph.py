@@ -3,7 +3,6 @@
 """Solves pose graphs of any origin: ``oort graph solve IN.g2o OUT.g2o``."""
 
 import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from oort.cli.tool import run_tool
+from oort.cli.tool import add_json_argument, print_result, run_tool
 from oort.evaluation.graph import (
     METHODS,
     Solution,
@@ -90,7 +89,7 @@ def _parser() -> argparse.ArgumentParser:
         "--scale", type=float, default=2.0, metavar="PHI", help="chi2 at which a closure is half off (default 2)"
     )
     solve.add_argument("--truth", metavar="FILE", help="the true poses: a .g2o file, or lines x y theta")
-    solve.add_argument("--json", action="store_true", help="print JSON")
+    add_json_argument(solve)
     return parser
 
 
@@ -110,7 +109,7 @@ def _run(arguments: argparse.Namespace) -> None:
         ),
     )
     figures = _figures(graph, solution, truth)
-    print(json.dumps(figures, indent=2) if arguments.json else _format(figures))
+    print_result(arguments, figures, _format(figures))
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -3,11 +3,10 @@
 """``oort history MAP``: lists the earlier versions of a saved map, or goes back to one."""
 
 import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from oort.cli.tool import run_tool
+from oort.cli.tool import add_json_argument, print_result, run_tool
 from oort.history import describe, restore, versions
 
 
@@ -22,23 +21,17 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--restore", type=int, metavar="N", help="make version N the map again; what it is now becomes version 1"
     )
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_json_argument(parser)
     return parser
 
 
 def _run(arguments: argparse.Namespace) -> None:
     if arguments.restore is not None:
         restore(arguments.map, arguments.restore)
-        print(f"{arguments.map}: is version {arguments.restore} again; what it was is version 1 now")
-        return
-    found = versions(arguments.map)
-    if arguments.json:
-        print(json.dumps([asdict(version) for version in found], indent=2))
-        return
-    for version in found:
-        print(describe(version))
-    if not found:
-        print(f"{arguments.map}: no earlier versions")
+        told = f"{arguments.map}: is version {arguments.restore} again; what it was is version 1 now"
+    else:
+        told = "\n".join(map(describe, versions(arguments.map))) or f"{arguments.map}: no earlier versions"
+    print_result(arguments, [asdict(version) for version in versions(arguments.map)], told)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

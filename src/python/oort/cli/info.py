@@ -3,11 +3,10 @@
 """``oort info PATH``: what a saved map or a recording is."""
 
 import argparse
-import json
 from collections.abc import Sequence
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import add_checksum_argument, parse_arguments, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, parse_arguments, print_result, run_tool
 from oort.offline.info import format_info, is_saved_map, map_info, recording_info
 from oort.parameters import read_parameters
 
@@ -21,7 +20,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("input", nargs="+", metavar="PATH", help="a saved map, or a recording as for oort replay")
     add_recording_arguments(parser)
     add_checksum_argument(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_json_argument(parser)
     return parser
 
 
@@ -31,7 +30,7 @@ def _run(args: argparse.Namespace) -> None:
         info = map_info(args.input[0], parameters, ignore_checksum=args.ignore_checksum)
     else:
         info = recording_info(recording_of(args, parameters))
-    print(json.dumps(info, indent=2) if args.json else format_info(info))
+    print_result(args, info, format_info(info))
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -3,13 +3,19 @@
 """``oort localize MAP RECORDING``: follows a recorded drive on a saved map, which stays as it is."""
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import add_checksum_argument, add_pose_argument, parse_arguments, run_tool
+from oort.cli.tool import (
+    add_checksum_argument,
+    add_json_argument,
+    add_pose_argument,
+    parse_arguments,
+    print_result,
+    run_tool,
+)
 from oort.image_maps import open_reference_map
 from oort.localization import STARTS, start_pose
 from oort.offline.follow import follow
@@ -34,7 +40,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--out", metavar="DIR", help="results folder (default: oort-out/<name of the input>-localized)")
     add_checksum_argument(parser)
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    parser.add_argument("--json", action="store_true", help="print report.json and nothing else but errors")
+    add_json_argument(parser)
     return parser
 
 
@@ -50,13 +56,13 @@ def _run(args: argparse.Namespace) -> None:
     drive = follow(recording, scans_with_progress(recording, args.quiet or args.json), map_, parameters, start)
     folder = Path(args.out) if args.out else Path("oort-out") / f"{recording.name}-localized"
     report = write_localization(drive, map_, args.map, parameters, folder)
-    if args.json:
-        print(json.dumps(report, indent=2))
-    elif not args.quiet:
+    if args.quiet and not args.json:
+        return
+    if not args.json:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
-        print(format_localization(report))
-        print(f"wrote {folder}: trajectory.tum map.png report.json")
+    told = f"{format_localization(report)}\nwrote {folder}: trajectory.tum map.png report.json"
+    print_result(args, report, told)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

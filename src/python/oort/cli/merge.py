@@ -5,7 +5,14 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, add_pose_argument, parse_arguments, run_tool
+from oort.cli.tool import (
+    add_checksum_argument,
+    add_json_argument,
+    add_pose_argument,
+    parse_arguments,
+    print_steps,
+    run_tool,
+)
 from oort.offline.merge import merge
 from oort.parameters import read_parameters
 
@@ -25,14 +32,15 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     add_checksum_argument(parser)
+    add_json_argument(parser)
     return parser
 
 
 def _run(args: argparse.Namespace) -> None:
     at = (args.at[0], args.at[1], args.at[2]) if args.at else None
     parameters = read_parameters(args.params)
-    for line in merge(args.first, args.second, args.target, parameters, at, ignore_checksum=args.ignore_checksum):
-        print(line, flush=True)
+    checksum = args.ignore_checksum
+    print_steps(args, merge(args.first, args.second, args.target, parameters, at, ignore_checksum=checksum))
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.offline.migrate import migrate
 
 
@@ -19,21 +19,22 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("target", metavar="OUT", help="where the new one goes")
     parser.add_argument("--original", action="store_true", help="write the format of the original Oort instead")
     add_checksum_argument(parser)
+    add_json_argument(parser)
     return parser
+
+
+def _run(args: argparse.Namespace) -> None:
+    maps = migrate(args.source, args.target, to_original=args.original, ignore_checksum=args.ignore_checksum)
+    source, target = maps["source"], maps["target"]
+    writer = f", written by {source['written_by']}" if source["written_by"] else ""
+    lines = [
+        f"{source['path']}: format {source['format']}{writer}, {source['nodes']} nodes",
+        f"{target['path']}: format {target['format']}",
+    ]
+    print_result(args, maps, "\n".join(lines))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
-    arguments = _parser().parse_args(argv)
-    return run_tool(
-        "oort migrate",
-        lambda: print(
-            migrate(
-                arguments.source,
-                arguments.target,
-                to_original=arguments.original,
-                ignore_checksum=arguments.ignore_checksum,
-            )
-        ),
-        arguments.source,
-    )
+    args = _parser().parse_args(argv)
+    return run_tool("oort migrate", lambda: _run(args), args.source)

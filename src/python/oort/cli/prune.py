@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.offline.prune import prune
 from oort.parameters import read_parameters
 
@@ -33,15 +33,18 @@ def _parser() -> argparse.ArgumentParser:
         help="of a piece of surface from one side (default: keep_views of params.json)",
     )
     add_checksum_argument(parser)
+    add_json_argument(parser)
     return parser
+
+
+def _run(args: argparse.Namespace) -> None:
+    views = args.views or int(read_parameters().get("keep_views"))
+    maps = prune(args.source, args.target, views, ignore_checksum=args.ignore_checksum)
+    lines = ["{path}: {nodes} nodes, {closures} closures".format(**figures) for figures in maps.values()]
+    print_result(args, maps, "\n".join(lines))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
-    arguments = _parser().parse_args(argv)
-    views = arguments.views or int(read_parameters().get("keep_views"))
-    return run_tool(
-        "oort prune",
-        lambda: print(prune(arguments.source, arguments.target, views, ignore_checksum=arguments.ignore_checksum)),
-        arguments.source,
-    )
+    args = _parser().parse_args(argv)
+    return run_tool("oort prune", lambda: _run(args), args.source)

@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, print_steps, run_tool
 from oort.offline.render import render
 from oort.parameters import read_parameters
 
@@ -21,12 +21,13 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("prefix", metavar="prefix", help="where the pictures go, for example maps/home")
     parser.add_argument("params", nargs="?", help="parameters (default: the packaged params.json)")
     add_checksum_argument(parser)
+    add_json_argument(parser)
     return parser
 
 
 def _run(args: argparse.Namespace) -> None:
-    for line in render(args.map, args.prefix, read_parameters(args.params), ignore_checksum=args.ignore_checksum):
-        print(line)
+    parameters = read_parameters(args.params)
+    print_steps(args, render(args.map, args.prefix, parameters, ignore_checksum=args.ignore_checksum))
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -3,11 +3,10 @@
 """``oort rooms MAP``: the rooms of a saved map with their areas, and their names."""
 
 import argparse
-import json
 from collections.abc import Sequence
 from typing import Any
 
-from oort.cli.tool import add_checksum_argument, run_tool
+from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.errors import InputError
 from oort.export.named_rooms import ROOMS, NamedRoom
 from oort.offline.export import rooms_of
@@ -32,7 +31,7 @@ def _parser() -> argparse.ArgumentParser:
         help="name room number N; may be repeated",
     )
     parser.add_argument("--params", metavar="FILE", help="parameters of drawing (default: the packaged params.json)")
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_json_argument(parser)
     add_checksum_argument(parser)
     return parser
 
@@ -77,12 +76,8 @@ def _run(args: argparse.Namespace) -> None:
     if args.name:
         _name(args, rooms)
         rooms = rooms_of(open_map(args.map, ignore_checksum=args.ignore_checksum), parameters)
-    if args.json:
-        print(json.dumps([_told(named) for named in rooms], indent=2))
-        return
-    for named in rooms:
-        print(_line(named))
-    print(f"{len(rooms)} rooms, {sum(named.room.area for named in rooms):.1f} m²")
+    total = f"{len(rooms)} rooms, {sum(named.room.area for named in rooms):.1f} m²"
+    print_result(args, [_told(named) for named in rooms], "\n".join([*map(_line, rooms), total]))
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -4,13 +4,13 @@
 
 import argparse
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from oort._core import Parameters
-from oort.cli.tool import add_worker_arguments, run_tool
+from oort.cli.tool import add_json_argument, add_worker_arguments, print_steps, run_tool
 from oort.errors import InputError
 from oort.export.files import write_atomically
 from oort.offline.scoring import Score
@@ -49,10 +49,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="of the search's random numbers")
     parser.add_argument("--at-once", metavar="N", type=int, default=1, help="trials in a round (default: 1)")
     add_worker_arguments(parser)
+    add_json_argument(parser)
     return parser
 
 
-def _run(args: argparse.Namespace) -> None:
+def _search(args: argparse.Namespace) -> Generator[str, None, dict[str, Any]]:
+    """Yields what to print on the way and returns what tune.json holds."""
     start = read_parameters(args.params)
     axes = tuple(parse_axis(text, start) for text in args.search)
     task = Task(tuple(args.recordings), start, axes, args.seed, max(1, args.at_once))
@@ -60,14 +62,12 @@ def _run(args: argparse.Namespace) -> None:
     with open_pool(args.jobs, args.cluster) as pool:
         search = Search(task, out, pool)
         if all(score.kind == "failed" for score in search.start_scores.values()):
-            print("no recording can be mapped with the parameters to start from")
+            yield "no recording can be mapped with the parameters to start from"
         tried: list[Tried] = []
         for one in search.run(args.trials):
             tried.append(one)
             best = min(tried, key=lambda t: t.error)
-            print(
-                f"[{len(tried)}/{args.trials}] error {one.error:.3f} of the start's, best {best.error:.3f}", flush=True
-            )
+            yield f"[{len(tried)}/{args.trials}] error {one.error:.3f} of the start's, best {best.error:.3f}"
         best = min(tried, key=lambda t: t.error)
         if best.error >= 1.0:
             raise InputError(
@@ -76,8 +76,25 @@ def _run(args: argparse.Namespace) -> None:
         parameters = search.with_values(best.values)
         names = [*args.recordings, *args.check]
         before, after = search.scores(names, start), search.scores(names, parameters)
-    _write(out, parameters, best, tried, (before, after), args.check)
-    print(f"wrote {out / 'params.json'}: use it with --params; {out / 'tune.json'} has every trial")
+    lines = _found(best, tried, (before, after), args.check)
+    yield from lines
+    told = _write(out, parameters, best, tried, (before, after), args.check, lines)
+    yield f"wrote {out / 'params.json'}: use it with --params; {out / 'tune.json'} has every trial"
+    return told
+
+
+Scores = tuple[Mapping[str, Score], Mapping[str, Score]]
+"""before and after"""
+
+
+def _found(best: Tried, tried: Sequence[Tried], scores: Scores, check: Sequence[str]) -> list[str]:
+    """What was found, as lines."""
+    before, after = scores
+    lines = [f"found by oort tune in {len(tried)} trials: {best.error:.3f} of the error of the start"]
+    for name in before:
+        role = " (not searched on)" if name in check else ""
+        lines.append(f"{Path(name).name}{role}: {_said(before[name])} before, {_said(after[name])} with these values")
+    return lines
 
 
 def _write(
@@ -85,16 +102,12 @@ def _write(
     parameters: Parameters,
     best: Tried,
     tried: Sequence[Tried],
-    scores: tuple[Mapping[str, Score], Mapping[str, Score]],
+    scores: Scores,
     check: Sequence[str],
-) -> None:
-    """Writes params.json, whose comments say why, and tune.json; prints those lines too."""
+    lines: Sequence[str],
+) -> dict[str, Any]:
+    """Writes params.json, whose comments are the lines, and tune.json; returns what that holds."""
     before, after = scores
-    lines = [f"found by oort tune in {len(tried)} trials: {best.error:.3f} of the error of the start"]
-    for name in before:
-        role = " (not searched on)" if name in check else ""
-        lines.append(f"{Path(name).name}{role}: {_said(before[name])} before, {_said(after[name])} with these values")
-    print("\n".join(lines))
     changed = {path: value for path, value in parameters.to_dict().items() if value != Parameters().get(path)}
     comments = "".join(f"# {line}\n" for line in lines)
     write_atomically(out / "params.json", (comments + to_json(changed)).encode())
@@ -107,6 +120,7 @@ def _write(
         "trials": [asdict(one) for one in tried],
     }
     write_atomically(out / "tune.json", (json.dumps(told, indent=1) + "\n").encode())
+    return told
 
 
 def _said(score: Score) -> str:
@@ -118,4 +132,4 @@ def _said(score: Score) -> str:
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status: 0, or 2 for an error, which is printed."""
     args = _parser().parse_args(argv)
-    return run_tool("oort tune", lambda: _run(args))
+    return run_tool("oort tune", lambda: print_steps(args, _search(args)))

@@ -3,16 +3,18 @@
 """Lays two runs side by side."""
 
 from pathlib import Path
+from typing import Any
 
 from oort.export.files import write_atomically
-from oort.report.compare_page import make_compare_page
+from oort.report.arrays import unpack
+from oort.report.compare_page import compare_page_data, make_compare_page
 from oort.report.page import read_page_data
 
 _REPORT = "report.html"
 
 
-def compare(a: str, b: str, out: str) -> str:
-    """Writes a page that lays two replays side by side and over each other; returns its path.
+def compare(a: str, b: str, out: str) -> dict[str, Any]:
+    """Writes a page that lays two replays side by side and over each other; returns what differs.
 
     ``a`` and ``b`` are folders of replays or their report.html. Raises InputError for anything else, OortError if the
     page cannot be written.
@@ -22,8 +24,16 @@ def compare(a: str, b: str, out: str) -> str:
     names = [_name(path) for path in paths]
     if names[0] == names[1]:
         names = [str(path) for path in paths]
-    write_atomically(Path(out), make_compare_page(data_a, data_b, (names[0], names[1])))
-    return out
+    data = compare_page_data(data_a, data_b, (names[0], names[1]))
+    write_atomically(Path(out), make_compare_page(data))
+    apart = unpack(data["apart"]["distance"])
+    return {
+        "names": names,
+        "figures": {name: each for name, *each in data["figures"]},
+        "parameters": {name: each for name, *each in data["parameters"]},
+        "apart": {"mean": float(apart.mean()), "max": float(apart.max())} if len(apart) else None,
+        "written": [out],
+    }
 
 
 def _name(path: Path) -> str:

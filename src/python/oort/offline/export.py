@@ -45,14 +45,14 @@ FORMATS = {
 }
 
 
-def export(map_: Map, parameters: Parameters, format_: str, out: str) -> str:
+def export(map_: Map, parameters: Parameters, format_: str, out: str) -> list[str]:
     """Writes a map in one of FORMATS to a file; returns the names of what was written.
 
     Raises InputError if the map holds nothing for that format, OortError if the file cannot be written.
     """
     if not len(map_):
         raise InputError("the map is empty: there is nothing to export")
-    return _WRITERS[format_](map_, parameters, Path(out)) or out
+    return _WRITERS[format_](map_, parameters, Path(out)) or [out]
 
 
 def places_of(map_: Map) -> list[tuple[str, str, Pose]]:
@@ -92,12 +92,12 @@ def _grid(map_: Map, parameters: Parameters) -> OccupancyGrid:
     return cleaned
 
 
-def _pgm(map_: Map, parameters: Parameters, out: Path) -> str:
+def _pgm(map_: Map, parameters: Parameters, out: Path) -> list[str]:
     grid = _grid(map_, parameters)
     image: Literal["png", "pgm"] = "png" if out.suffix == ".png" else "pgm"
     base = out.with_suffix("") if out.suffix in (".pgm", ".png", ".yaml") else out
     write_map_server(str(base), grid.cells, grid.resolution, (*grid.origin, 0.0), image_format=image)
-    return f"{base}.{image} {base}.yaml"
+    return [f"{base}.{image}", f"{base}.yaml"]
 
 
 def _geojson(map_: Map, parameters: Parameters, out: Path) -> None:
@@ -127,10 +127,10 @@ def _area_feature(area: Area) -> dict[str, Any]:
     return feature(properties, "LineString", points)
 
 
-def _keepout(map_: Map, parameters: Parameters, out: Path) -> str:
+def _keepout(map_: Map, parameters: Parameters, out: Path) -> list[str]:
     base = out.with_suffix("") if out.suffix in (".pgm", ".yaml") else out
     write_keepout(base, _grid(map_, parameters), areas_of(places_of(map_)))
-    return f"{base}.pgm {base}.yaml"
+    return [f"{base}.pgm", f"{base}.yaml"]
 
 
 def _valetudo(map_: Map, parameters: Parameters, out: Path) -> None:
@@ -148,7 +148,7 @@ def _tum(map_: Map, _: Parameters, out: Path) -> None:
     write_tum(out, [f"{time:.6f}" for time in map_.cloud_times.tolist()], map_.node_poses)
 
 
-_WRITERS: dict[str, Callable[[Map, Parameters, Path], str | None]] = {
+_WRITERS: dict[str, Callable[[Map, Parameters, Path], list[str] | None]] = {
     "pgm": _pgm,
     "svg": lambda map_, parameters, out: write_svg(out, floor_plan(map_, parameters)),
     "dxf": lambda map_, parameters, out: write_dxf(out, floor_plan(map_, parameters)),

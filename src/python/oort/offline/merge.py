@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joins two saved maps of the same home into one."""
 
-from collections.abc import Iterator
+from collections.abc import Generator
+from typing import Any
 
 import numpy as np
 
@@ -37,8 +38,10 @@ def merge(
     at: Pose | None = None,
     *,
     ignore_checksum: bool = False,
-) -> Iterator[str]:
-    """Joins the map at a path with another and saves it, with a picture beside it; yields what to print on the way.
+) -> Generator[str, None, dict[str, Any]]:
+    """Joins the map at a path with another and saves it, with a picture beside it.
+
+    Yields what to print on the way and returns the figures.
 
     ``at`` is about where the second map's origin lies on the first [m, rad]; found if not given. Raises InputError if
     two of the paths are of the same map, MapFileError, what merge_maps() raises, and at last, with the map saved and
@@ -64,8 +67,20 @@ def merge(
     yield f"{target}: {len(pruned)} nodes"
     (grid, _), notes = draw_map(map_, parameters)
     yield from notes
-    if _draw(f"{paths[2]}.png", merged, map_, grid):
-        yield f"wrote {paths[2]}.png"
+    picture = f"{paths[2]}.png"
+    drawn = _draw(picture, merged, map_, grid)
+    if drawn:
+        yield f"wrote {picture}"
+    return {
+        "nodes": {"first": len(a), "second": len(b), "target": len(pruned)},
+        "T_first_second": list(merged.T_a_b),
+        "found_by": merged.found_by,
+        "views": {"all": merged.views, "fit": merged.views_that_fit, "contradict": merged.views_that_contradict},
+        "closures": {**merged.closures, "kept": merged.closures_kept},
+        "dropped_places": [{"space": space, "id": id_, "distance": apart} for space, id_, apart in merged.dropped],
+        "map": target,
+        "picture": picture if drawn else None,
+    }
 
 
 def _pruned(map_: Map, views: int) -> Map:

@@ -2,13 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a saved map in the newest format, or as the original Oort did."""
 
+from typing import Any
+
 from oort._core import FORMAT_VERSION, normalise_map_path, read_map_format, save_map
 from oort.errors import InputError
 from oort.saved_maps import open_map
 
 
-def migrate(source: str, target: str, *, to_original: bool = False, ignore_checksum: bool = False) -> str:
-    """Writes a map in another format, with the same content; returns what to print.
+def migrate(
+    source: str, target: str, *, to_original: bool = False, ignore_checksum: bool = False
+) -> dict[str, dict[str, Any]]:
+    """Writes a map in another format, with the same content; tells of both.
 
     Raises InputError if both are the same map, and MapFileError.
     """
@@ -17,6 +21,8 @@ def migrate(source: str, target: str, *, to_original: bool = False, ignore_check
     map_ = open_map(source, ignore_checksum=ignore_checksum)
     old = read_map_format(source, ignore_checksum=True)
     save_map(target, map_, as_original=to_original)
-    writer = f", written by {old.written_by}" if old.written_by else ""
     new = 0 if to_original else FORMAT_VERSION
-    return f"{source}: format {old.version}{writer}, {len(map_)} nodes\n{target}: format {new}"
+    return {
+        "source": {"path": source, "format": old.version, "written_by": old.written_by, "nodes": len(map_)},
+        "target": {"path": target, "format": new},
+    }

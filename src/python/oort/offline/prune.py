@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a saved map with only the views that it needs."""
 
+from typing import Any
+
 from oort._core import Map, normalise_map_path, prune_map, save_map
 from oort.errors import InputError
 from oort.saved_maps import open_map
 
 
-def prune(source: str, target: str, views: int, *, ignore_checksum: bool = False) -> str:
-    """Writes a map without what is seen often enough from elsewhere, or contradicted since; returns what to print.
+def prune(source: str, target: str, views: int, *, ignore_checksum: bool = False) -> dict[str, dict[str, Any]]:
+    """Writes a map without what is seen often enough from elsewhere, or contradicted since; tells of both.
 
     ``views``: of a piece of surface from one side. Raises InputError if both paths are of the same map, MapFileError.
     """
@@ -17,8 +19,8 @@ def prune(source: str, target: str, views: int, *, ignore_checksum: bool = False
     map_ = open_map(source, ignore_checksum=ignore_checksum)
     pruned = prune_map(map_, views)
     save_map(target, pruned)
-    return f"{source}: {_size(map_)}\n{target}: {_size(pruned)}"
+    return {"source": _figures(source, map_), "target": _figures(target, pruned)}
 
 
-def _size(map_: Map) -> str:
-    return f"{len(map_)} nodes, {len(map_.switchable_edges['i'])} closures"
+def _figures(path: str, map_: Map) -> dict[str, Any]:
+    return {"path": path, "nodes": len(map_), "closures": len(map_.switchable_edges["i"])}

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws a saved map as pictures for map_server."""
 
-from collections.abc import Iterator
+from collections.abc import Generator
+from typing import Any
 
 from oort._core import Parameters
 from oort.diagnosis import loose_parts
@@ -12,18 +13,25 @@ from oort.offline.drawing import draw_map
 from oort.saved_maps import open_map
 
 
-def render(map_path: str, prefix: str, parameters: Parameters, *, ignore_checksum: bool = False) -> Iterator[str]:
+def render(
+    map_path: str, prefix: str, parameters: Parameters, *, ignore_checksum: bool = False
+) -> Generator[str, None, dict[str, Any]]:
     """Writes PREFIX_map and PREFIX_map_cleaned, each .png and .yaml; yields the names of each pair, after notes.
+
+    Returns both.
 
     Raises MapFileError, InputError if there is nothing to draw, and OortError if a file cannot be written.
     """
     map_ = open_map(map_path, ignore_checksum=ignore_checksum)
     grids, notes = draw_map(map_, parameters)
+    notes = [*notes, *(str(trouble) for trouble in loose_parts(map_))]
     yield from notes
-    yield from (str(trouble) for trouble in loose_parts(map_))
+    written: list[str] = []
     for grid, name in zip(grids, ("map", "map_cleaned"), strict=True):
         if not grid.cells.size:
             raise InputError(f"{map_path}: there is nothing to draw, for no scan of this map has a return")
         base = f"{prefix}_{name}"
         write_map_server(base, grid.cells, grid.resolution, (*grid.origin, 0.0), image_format="png")
-        yield f"{base}.png {base}.yaml"
+        written += [f"{base}.png", f"{base}.yaml"]
+        yield " ".join(written[-2:])
+    return {"notes": notes, "written": written}

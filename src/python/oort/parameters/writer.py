@@ -43,12 +43,15 @@ def files() -> dict[str, str]:
     }
 
 
-def write(root: Path) -> None:
-    """Writes the files below the root of the project."""
+def write(root: Path) -> list[Path]:
+    """Writes the files below the root of the project; returns their paths."""
+    written = []
     for name, content in files().items():
         path = root / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(content, encoding="utf-8")
+        written.append(path)
+    return written
 
 
 def to_json(values: Mapping[str, bool | int | float | str]) -> str:
