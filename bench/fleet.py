@@ -67,19 +67,20 @@ def run(recordings: list[str], out: Path, jobs: int, cluster: str | None, after:
 
 
 @contextmanager
-def two_workers() -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
-    """A scheduler with two worker processes on loopback."""
-    module = [sys.executable, "-m"]
-    scheduler = subprocess.Popen(
-        [*module, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert scheduler.stderr is not None
-    address = next(line.split()[-1] for line in scheduler.stderr if "tcp://" in line)
-    command = [*module, "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
-    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "text": True}
-    workers = [subprocess.Popen(command, **quiet) for _ in range(2)]
+def two_workers(folder: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """A scheduler with two worker processes on loopback; the folder is for the scheduler's file."""
+    place = folder / "scheduler.json"
+    place.unlink(missing_ok=True)
+
+    def start(name: str, *options: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", f"distributed.cli.{name}", "--scheduler-file", str(place), "--no-dashboard"]
+        return subprocess.Popen([*command, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    scheduler = start("dask_scheduler", "--host", "127.0.0.1", "--port", "0")
+    workers = [start("dask_worker", "--nthreads", "1", "--no-nanny") for _ in range(2)]
+    while not place.is_file() or not place.read_text():
+        time.sleep(0.05)
+    address = json.loads(place.read_text())["address"]
     try:
         yield address, workers
     finally:
@@ -127,7 +128,7 @@ def main() -> None:
     tell("this machine", here)
     results = {"here": here}
     if args.cluster:
-        with two_workers() as (address, workers):
+        with two_workers(args.keep) as (address, workers):
             kill = {len(recordings) // 2: workers[0].kill}
             results["cluster"] = run(recordings, args.keep / "cluster", args.jobs, address, kill)
         tell("two Dask workers, one killed in the middle", results["cluster"])

@@ -4,13 +4,12 @@
 
     .venv/bin/python bench/sensors.py [--homes N] [--jobs N]
 
-The same homes and ways for each, odometry three times worse than a good base's, default parameters. Figures of the
-sensors are those of their data sheets, rounded; noise is the simulator's unless the sheet says otherwise.
+The presets of `oort simulate`, each in the same homes and on the same ways, with odometry three times worse than a good
+base's, and default parameters.
 """
 
 import argparse
 import datetime
-import math
 import tempfile
 import time
 from functools import partial
@@ -22,27 +21,18 @@ from oort import Parameters
 from oort.evaluation.trajectories import evaluate_ate
 from oort.export import Trajectory, read_tum
 from oort.recording import open_recording
-from oort.simulate import Sensor, SimulationConfig, simulate_drive
+from oort.simulate import PRESETS, SimulationConfig, simulate_drive
 from oort.simulate.writers import write_drive
 from trials.replays import replay
 from trials.rows import BROKEN
 from trials.tables import print_table
 from trials.workers import Failure, run_all
 
-SENSORS = {
-    "short range, as Kuri's: 180°, 3 m": Sensor(),
-    "depth camera, as RealSense: 87°, 4 m": Sensor(math.radians(87), 87, 0.3, 4.0, noise=0.005, noise_per_metre=0.01),
-    "spinning, as LD06 or RPLidar: 360°, 10 Hz, 8 m": Sensor(
-        2.0 * math.pi, 450, 0.15, 8.0, noise=0.01, noise_per_metre=0.005, sweep_seconds=0.1
-    ),
-    "scanner, as Hokuyo URG: 270°, 5.6 m": Sensor(math.radians(270), 540, 0.06, 5.6, noise=0.01, noise_per_metre=0.005),
-}
-
 
 def measure(name: str, seed: int) -> tuple[float, float, float]:
     """Position error [m], CPU seconds, and milliseconds of the 99th percentile of a scan."""
     with tempfile.TemporaryDirectory() as place:
-        drive = simulate_drive(seed, SimulationConfig(SENSORS[name], odometry_error=3.0))
+        drive = simulate_drive(seed, SimulationConfig(PRESETS[name], odometry_error=3.0))
         write_drive(drive, Path(place), "home", picture=False)
         started = time.process_time()
         replayed = replay(open_recording(f"{place}/home.bag"), Parameters())
@@ -59,8 +49,8 @@ def main() -> None:
     parser.add_argument("--homes", type=int, default=10, metavar="N", help="homes for each sensor (default: 10)")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="drives at once")
     arguments = parser.parse_args()
-    keys = [(name, seed) for name in SENSORS for seed in range(1, arguments.homes + 1)]
-    figures: dict[str, list[tuple[float, float, float]]] = {name: [] for name in SENSORS}
+    keys = [(name, seed) for name in PRESETS for seed in range(1, arguments.homes + 1)]
+    figures: dict[str, list[tuple[float, float, float]]] = {name: [] for name in PRESETS}
     for index, result in run_all([partial(measure, *key) for key in keys], arguments.jobs):
         if isinstance(result, Failure):
             raise SystemExit(f"{keys[index]}: {result.reason}")

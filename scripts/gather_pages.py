@@ -12,12 +12,17 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 _LINK = re.compile(r"\]\(([^)#\s]+)")
+_NAMED_AS_FILE = re.compile(r"\[[\w/]+\.md\]\((?P<target>[\w./-]+\.md)(?P<part>[^)]*)\)")
+_IN_MENU = re.compile(r"^ *- (.+): (\S+\.md)$", re.MULTILINE)
 
 
 def gather(folder: Path) -> None:
-    """Copies README.md, docs/ and all that can be reached from there by links to files."""
+    """Copies README.md, docs/ and all that can be reached from there by links to files.
+
+    A link called as the file that it leads to is called as the menu calls that page: on the site there is no such file.
+    """
     shutil.rmtree(folder, ignore_errors=True)
-    waiting, known = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], set[Path]()
+    waiting, known = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "docs/site.css"], set[Path]()
     while waiting:
         path = waiting.pop()
         if path in known or not path.is_file() or ROOT not in path.parents:
@@ -25,10 +30,23 @@ def gather(folder: Path) -> None:
         known.add(path)
         copy = folder / path.relative_to(ROOT)
         copy.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(path, copy)
-        if path.suffix == ".md":
-            links = _LINK.findall(path.read_text(encoding="utf-8"))
+        if path.suffix != ".md":
+            shutil.copyfile(path, copy)
+        else:
+            text = path.read_text(encoding="utf-8")
+            copy.write_text(_titled(text, path.parent), encoding="utf-8")
+            links = _LINK.findall(text)
             waiting += [(path.parent / link).resolve() for link in links if "://" not in link]
+
+
+def _titled(text: str, folder: Path) -> str:
+    names = {ROOT / page: name for name, page in _IN_MENU.findall((ROOT / "mkdocs.yml").read_text(encoding="utf-8"))}
+
+    def link(match: re.Match[str]) -> str:
+        name = names.get((folder / match["target"]).resolve())
+        return f"[{name}]({match['target']}{match['part']})" if name else match[0]
+
+    return _NAMED_AS_FILE.sub(link, text)
 
 
 if __name__ == "__main__":

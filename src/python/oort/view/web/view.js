@@ -64,7 +64,8 @@ class LiveView {
     if (now === this.placed) return;
     this.placed = now;
     this.map.showPlaces(places, areas);
-    $("places").replaceChildren(...places.map(({ space, id }) => element("li", {}, `${space}/${id}`, control ? element("button", { type: "button", "aria-label": `Forget ${space}/${id}`, onclick: () => this.forget(space, id) }, "×") : null)));
+    if (!places.length) $("places").replaceChildren(element("li", { class: "key" }, "none"));
+    else $("places").replaceChildren(...places.map(({ space, id }) => element("li", {}, `${space}/${id}`, control ? element("button", { type: "button", "aria-label": `Forget ${space}/${id}`, onclick: () => this.forget(space, id) }, "×") : null)));
   }
 
   forget(space, id) {
