@@ -3,7 +3,10 @@
 """The documentation is true: its Python examples run, and it names every option, call and file there is."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -82,3 +85,16 @@ def test_links_lead_somewhere(page: str) -> None:
     path = ROOT / page
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", path.read_text(encoding="utf-8")):
         assert target.startswith("https://") or (path.parent / target).exists(), target
+
+
+def test_links_to_elsewhere_can_be_links() -> None:
+    listing = subprocess.run(
+        [sys.executable, str(ROOT / "scripts/external_links.py")], capture_output=True, text=True, check=True
+    )
+    links = [line.partition("\t")[0] for line in listing.stdout.splitlines()]
+    assert len(links) > 30
+    for link in links:
+        parts = urlsplit(link)
+        assert parts.scheme in ("https", "http"), link
+        assert re.fullmatch(r"[a-z0-9-]+(\.[a-z0-9-]+)+", parts.netloc), link
+        assert re.fullmatch(r"[!-~]+", link), link

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The documentation as a site: it builds, every page is in its menu, and no link or anchor in it is dead."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +34,8 @@ def test_the_site_builds_without_a_dead_link(pages: Path, tmp_path: Path) -> Non
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "site/docs/loops.html").is_file()
     assert (tmp_path / "site/docs/images/home.png").is_file()
+    assert ">Accuracy</a>" in (tmp_path / "site/docs/tuning.html").read_text()
+    assert not re.search(r">[\w/]+\.md</a>", (tmp_path / "site/docs/tuning.html").read_text())
 
 
 def test_a_dead_link_would_be_found(pages: Path, tmp_path: Path) -> None:
