@@ -13,6 +13,7 @@ from conftest import ROOT
 PACKAGE = ROOT / "src" / "python" / "oort"
 
 ORDER = [
+    "interrupts",
     "_core",
     "errors",
     "inputs",

@@ -2,6 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Oort: 2D laser SLAM for home robots with short-range, coarse depth sensors."""
 
+# ruff: noqa: E402 (the imports take a third of a second, in which Ctrl-C may come)
+from oort.interrupts import end_without_a_word
+
+end_without_a_word()
+
 from oort._core import (
     LocalizationState,
     Map,

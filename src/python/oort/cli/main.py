@@ -3,7 +3,6 @@
 """The command ``oort``: one word for each tool."""
 
 import importlib
-import signal
 import sys
 from collections.abc import Sequence
 
@@ -40,14 +39,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         stream = sys.stdout if arguments[:1] in (["-h"], ["--help"]) else sys.stderr
         print("usage: oort TOOL ...", *(f"  {name:<11}{what}" for name, what in TOOLS.items()), sep="\n", file=stream)
         return 0 if stream is sys.stdout else 2
-    try:
-        return _run(arguments)
-    except KeyboardInterrupt:  # before the tool itself could take it
-        print(f"oort {arguments[0]}: interrupted", file=sys.stderr)
-        return 128 + signal.SIGINT
-
-
-def _run(arguments: list[str]) -> int:
     module = importlib.import_module(f"oort.cli.{arguments[0]}")
     result: int = module.main(arguments[1:])
     return result

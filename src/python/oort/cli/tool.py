@@ -15,6 +15,7 @@ from typing import Any
 
 from oort.errors import OortError
 from oort.export.files import decimal
+from oort.interrupts import take_interrupts
 
 UNCERTAIN = 3
 """The exit status of ``--strict`` where most of a drive is uncertain."""
@@ -39,6 +40,7 @@ def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # of names that the terminal cannot show
     try:
+        take_interrupts()
         status = run()
         sys.stdout.flush()
     except BrokenPipeError:  # who reads has seen enough, as with head
