@@ -150,13 +150,8 @@ RenderedMap rendered_within(const Map map, const Parameters parameters, const st
   if (!within) return render(map, chosen, parameters);
   const auto& [x_min, y_min, x_max, y_max] = *within;
   const Eigen::AlignedBox2d box(Eigen::Vector2d(x_min, y_min), Eigen::Vector2d(x_max, y_max));
-  std::vector<Node> placed;
-  PointClouds clouds;
-  for (const std::uint64_t node : chosen) {
-    placed.push_back(map.graph.nodes.at(node));
-    clouds.push_back(map.clouds.shared(node));
-  }
-  const Cropped cropped = crop(placed, clouds, box);
+  const Cropped views = choose(map, chosen);
+  const Cropped cropped = crop(views.nodes, views.clouds, box);
   return render(cropped.nodes, cropped.clouds, parameters.output_map);
 }
 

@@ -37,5 +37,17 @@ TEST(Crop, RefusesWhatDoesNotFitTogether) {
   EXPECT_THROW(crop({}, PointClouds(), Eigen::AlignedBox2d()), InputError);
 }
 
+TEST(Choose, GivesTheNodesThatAreNamedAndRefusesOthers) {
+  Map map;
+  map.graph.nodes = {node_at(1.0, 0.0, 0.0), node_at(2.0, 0.0, 0.0)};
+  map.clouds = PointClouds({PointCloud{}, PointCloud{}});
+  const Cropped chosen = choose(map, {1});
+  ASSERT_EQ(chosen.nodes.size(), 1u);
+  ASSERT_EQ(chosen.clouds.size(), 1u);
+  EXPECT_EQ(chosen.nodes[0].pose.x, 2.0);
+  EXPECT_THROW(choose(map, {0, 2}), InputError);
+  EXPECT_THROW(choose(map, {std::numeric_limits<std::uint64_t>::max()}), InputError);
+}
+
 }  // namespace
 }  // namespace oort

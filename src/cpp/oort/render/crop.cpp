@@ -3,6 +3,7 @@
 #include "oort/render/crop.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
@@ -15,6 +16,20 @@ bool ends_outside(const Point2& point, const Pose2& T_map_sensor, const Eigen::A
 }
 
 }  // namespace
+
+Cropped choose(const Map& map, const std::vector<std::uint64_t>& nodes) {
+  const std::size_t count = std::min(map.graph.nodes.size(), map.clouds.size());
+  Cropped chosen;
+  for (const std::uint64_t node : nodes) {
+    if (node >= count) {
+      throw InputError("render: there is no node " + std::to_string(node) + " to draw; the map's are 0 to " +
+                       std::to_string(count) + ", the last left out");
+    }
+    chosen.nodes.push_back(map.graph.nodes[node]);
+    chosen.clouds.push_back(map.clouds.shared(node));
+  }
+  return chosen;
+}
 
 Cropped crop(const std::vector<Node>& nodes, const PointClouds& clouds, const Eigen::AlignedBox2d& box) {
   if (nodes.size() != clouds.size()) throw InputError("crop: each node needs a cloud of its own");

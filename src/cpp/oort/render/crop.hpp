@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "oort/graph/graph.hpp"
+#include "oort/map/map.hpp"
 #include "oort/map/point_clouds.hpp"
 
 namespace oort {
@@ -14,6 +16,9 @@ struct Cropped {
   std::vector<Node> nodes;
   PointClouds clouds;  ///< one for each node
 };
+
+/// Some nodes of a map, by their numbers. Throws InputError for one that the map does not have.
+Cropped choose(const Map& map, const std::vector<std::uint64_t>& nodes);
 
 /// The nodes in a box of the map frame [m], each with those of its beams that do not end outside the box: for maps that
 /// a few far readings or absurd poses make too wide to be drawn. Arguments as of render().

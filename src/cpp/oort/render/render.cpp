@@ -9,6 +9,7 @@
 #include "oort/geometry/errors.hpp"
 #include "oort/grid/range_data.hpp"
 #include "oort/map/parts.hpp"
+#include "oort/render/crop.hpp"
 #include "oort/render/speckle.hpp"
 
 namespace oort {
@@ -141,16 +142,8 @@ RenderedMap render(const std::vector<Node>& nodes, const PointClouds& clouds, co
 }
 
 RenderedMap render(const Map& map, const std::vector<std::uint64_t>& nodes, const Parameters& parameters) {
-  std::vector<Node> chosen;
-  PointClouds clouds;
-  for (const std::uint64_t node : nodes) {
-    if (node >= map.graph.nodes.size() || node >= map.clouds.size()) {
-      throw InputError("render: the map has no node " + std::to_string(node) + " with a cloud");
-    }
-    chosen.push_back(map.graph.nodes[node]);
-    clouds.push_back(map.clouds.shared(node));
-  }
-  return render(chosen, clouds, parameters.output_map);
+  const Cropped chosen = choose(map, nodes);
+  return render(chosen.nodes, chosen.clouds, parameters.output_map);
 }
 
 RenderedMap render(const Map& map, const Parameters& parameters) {
