@@ -5,12 +5,13 @@
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 
 from oort._core import Map, Parameters, render_map
 from oort.errors import StateError
 from oort.live.listener import Listener
 from oort.live.snapshot import Drawing, Snapshot
+from oort.live.worker import Worker
 from oort.naming import Naming, service
 
 MAP_TIMEOUT = 10.0  # [s] that latest() waits
@@ -30,7 +31,7 @@ class Gallery:
         self._parameters = parameters
         self._listener = listener
         self._wake = wake
-        self._thread = ThreadPoolExecutor(1, thread_name_prefix="oort-draw")
+        self._thread = Worker("oort-draw")
         self._asked_for = -1  # the newest revision
         self._last: Future[Drawing] | None = None  # its drawing
         self._soon = False  # somebody waits for it
@@ -95,7 +96,7 @@ class Gallery:
 
     def close(self) -> None:
         """Ends the thread after what was asked for."""
-        self._thread.shutdown()
+        self._thread.close()
 
     # ---- the drawing thread ----
 

@@ -4,10 +4,11 @@
 
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, wait
 
 from oort._core import Map, Saved
 from oort.errors import MapFileError
+from oort.live.worker import Worker
 from oort.session import save
 
 NAMES = {Saved.MAP: "map", Saved.METADATA: "meta"}
@@ -21,7 +22,7 @@ class Saver:
         """``saved`` and ``failed`` hear of each save from the saving thread."""
         self._tell_saved = saved
         self._tell_failed = failed
-        self._thread = ThreadPoolExecutor(1, thread_name_prefix="oort-save")
+        self._thread = Worker("oort-save")
         self._last: Future[Saved] | None = None
         self.error = ""
         """why the last save failed; empty if it did not"""
@@ -59,7 +60,7 @@ class Saver:
 
     def close(self) -> None:
         """Ends the thread after what was asked for."""
-        self._thread.shutdown()
+        self._thread.close()
 
     def _save(self, path: str, map_: Map, what: Saved) -> Saved:
         try:

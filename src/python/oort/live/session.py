@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A session that keeps up with a robot: a queue, and threads for mapping, drawing and saving."""
 
+import atexit
 import logging
 import math
 import threading
@@ -90,6 +91,7 @@ class LiveSession:
         """why mapping ended that nobody ended: a fault of Oort's own, or memory that is used up; empty if it goes on"""
         self._worker = threading.Thread(target=self._run, name="oort-map", daemon=True)
         self._worker.start()
+        atexit.register(self.close)  # a program may end without: its map is saved all the same
 
     # ---- for any thread ----
 
@@ -180,6 +182,7 @@ class LiveSession:
 
     def close(self) -> None:
         """Maps what is ready, saves the map, and ends the threads."""
+        atexit.unregister(self.close)
         self._closing = True
         self.inbox.wake()
         self._worker.join()
