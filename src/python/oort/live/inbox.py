@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The queue of a live session: scans and calls in the order in which they came."""
 
+import math
 import threading
 import time
 from collections import deque
@@ -18,6 +19,8 @@ PATIENCE = 10.0
 """[s] that a scan waits for its odometry"""
 PATIENCE_BEFORE_CALL = 2.0
 """[s] that scans wait on when a call has come that wants its turn after them"""
+PATIENCE_WHEN_OVERTAKEN = 2.0
+"""[s] that a scan waits on when one that came later is ready: odometry comes in order, so its own will hardly come"""
 
 _ASKED = 8  # scans that are not ready, after which the others wait for their turn
 
@@ -42,6 +45,8 @@ class ScanItem:
     """[s] time.monotonic()"""
     last_resort: Resolve
     """makes the scan of what is known, when the patience is over"""
+    overtaken: float = math.inf
+    """[s] time.monotonic() when a scan that came later was ready before it"""
     scan: Scan | None = None
     refused: str = ""
     """the kind of reason why it cannot be mapped"""
@@ -121,6 +126,8 @@ class Inbox:
                 return
             if not item.try_to_resolve():
                 self._unresolved.append(item)
+            elif item.scan is not None:
+                self._overtake(self._unresolved)
             self._items.append(item)
             self._changed.notify()
 
@@ -151,9 +158,20 @@ class Inbox:
                     failures += not item.try_to_resolve()
                     if failures == _ASKED:
                         break
+            last = max((k for k, item in enumerate(self._unresolved) if item.scan is not None), default=0)
+            self._overtake([item for item in self._unresolved[:last] if not item.is_settled])
             self._unresolved = [item for item in self._unresolved if not item.is_settled]
             if len(self._unresolved) < count:
                 self._changed.notify()
+
+    @staticmethod
+    def _overtake(items: Sequence[ScanItem]) -> None:
+        """A scan that came after these is ready."""
+        now = time.monotonic()
+        for item in reversed(items):
+            if item.overtaken < now:
+                break  # so are those before it
+            item.overtaken = now
 
     def wake(self) -> None:
         """Makes head() return."""
@@ -203,7 +221,7 @@ class Inbox:
         if isinstance(item, CallItem) or not mapping or item.scan is not None or item.refused:
             return True
         now = time.monotonic()
-        deadline = item.arrived + PATIENCE
+        deadline = min(item.arrived + PATIENCE, item.overtaken + PATIENCE_WHEN_OVERTAKEN)
         if self._calls:
             deadline = min(deadline, max(item.arrived, self._calls[0].arrived) + PATIENCE_BEFORE_CALL)
         if now >= deadline:

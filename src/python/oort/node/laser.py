@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The messages of one laser as scans with odometry, once the transforms that they need have come."""
 
+import time
 from collections.abc import Callable
 from functools import partial
 
@@ -16,6 +17,8 @@ from oort.recording import Pose, Scan
 from oort.recording.laser_scan import seconds
 from oort.recording.limits import NO_LIMITS, ScanLimits
 from oort.recording.motion import SNAPSHOT, beam_span
+
+_MOUNT_PATIENCE = 5.0  # [s] of the wall's clock that a further laser's transform may come later than its first scan
 
 
 class Laser:
@@ -37,6 +40,7 @@ class Laser:
         self._found = found
         self._limits = limits
         self._say_frame, self._say_increment = once(), Seldom()
+        self._unplaced: dict[str, float] = {}  # [s] time.monotonic() of the first scan in frames without a transform
         self.frame = ""
         """the main one's frame, once it is known"""
 
@@ -52,6 +56,8 @@ class Laser:
             if not message.ranges:
                 raise UnusableScanError("without readings")
             mount = self._transforms.mount(sensor_frame)
+            if mount is None:
+                self._check_patience(sensor_frame)
             placement = None if mount is None else self._transforms.place(stamp, arrived, span, last_resort)
             if mount is None or placement is None:
                 return None
@@ -62,6 +68,12 @@ class Laser:
             return to_scan(message, placement, mount.upside_down, self._limits, other)
 
         return resolve, partial(resolve, last_resort=True)
+
+    def _check_patience(self, sensor_frame: str) -> None:
+        """Raises UnusableScanError if the scans of a laser that nobody places would hold up another's."""
+        first = self._unplaced.setdefault(sensor_frame, time.monotonic())
+        if self.frame and time.monotonic() > first + _MOUNT_PATIENCE:
+            raise UnusableScanError(f"no transform from the base to their frame {sensor_frame}")
 
     def awaited(self, sensor_frame: str, expected: str) -> str:
         """The frame whose scans are used or, before one could be, wait: ``expected``, unless they come in another."""
