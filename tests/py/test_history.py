@@ -8,7 +8,7 @@ import pytest
 
 from oort import InputError, MapFileError, Mapper, load_map, save_map
 from oort.cli.main import main
-from oort.history import keep_version, restore, versions
+from oort.history import Version, describe, keep_version, restore, versions
 
 
 def save_numbered(path: str, number: int) -> None:
@@ -56,6 +56,10 @@ def test_a_broken_version_stops_nothing_and_is_not_restored(tmp_path: Path) -> N
     assert nodes(path) == 1
     keep_version(path)
     assert nodes(versions(path)[0].path) == 1
+
+
+def test_a_version_of_no_time_that_can_be() -> None:
+    assert "at no time that can be" in describe(Version(1, "home.previous", 1e300))
 
 
 def test_without_a_map_there_is_nothing_to_keep(tmp_path: Path) -> None:

@@ -57,8 +57,9 @@ void bind_entry(py::module_& m) {
 void bind_parameters(py::module_& m) {
   bind_entry(m);
   m.def("parameter_table", &parameter_table, "Every parameter once, in the order of params.json.");
-  m.def("unknown_parameter", &unknown_parameter, py::arg("path"),
-        "The message for a path that is in no table, with the nearest path or section that is.");
+  m.def(
+      "unknown_parameter", [](const std::string& path) { return to_str(unknown_parameter(path)); }, py::arg("path"),
+      "The message for a path that is in no table, with the nearest path or section that is.");
   py::class_<Parameters>(m, "Parameters", "The parameters of the engine, by their paths in params.json.")
       .def(py::init<>(), "Every value at its default.")
       .def("get", &get_parameter, py::arg("path"), "The value at a path. Raises ParameterError if it is unknown.")

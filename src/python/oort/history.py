@@ -66,7 +66,10 @@ def restore(path: str, number: int) -> None:
 
 def describe(version: Version) -> str:
     """A version in a line."""
-    when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(version.saved))
+    try:
+        when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(version.saved))
+    except (OverflowError, ValueError, OSError):  # a file's time may be anything
+        when = "at no time that can be"
     return f"{version.number}  kept {when}  {version.path}"
 
 

@@ -81,3 +81,6 @@ def test_a_url_brings_the_truth_beside_the_recording(tmp_path: Path) -> None:
     assert told.kind == "truth"
     assert "cannot be fetched" in score(Trial(f"file://{tmp_path}/none.clf", "{}")).why
     assert "Protocol not known" in score(Trial("nowhere://none.clf", "{}")).why
+    for url in (f"file://{tmp_path}/..", "memory://", "memory://a/."):
+        assert "does not end in the name of a recording" in score(Trial(url, "{}")).why
+    assert "a device" in score(Trial("file:///dev/zero", "{}")).why

@@ -17,6 +17,8 @@ from rosbags.typesys import Stores, get_typestore
 from ruamel.yaml import YAML
 from shapely.geometry import Polygon, shape
 
+import oort
+from helpers.scenes import room_scan
 from oort import Map, Parameters
 from oort.cli.export import main
 from oort.errors import InputError
@@ -222,6 +224,17 @@ def test_what_is_not_there_is_told(tmp_path: Path, map_: Map) -> None:
     with pytest.raises(InputError, match="no no-go areas"):
         export(map_, Parameters(), "nav2-keepout", str(tmp_path / "x.pgm"))
     map_.locations = places
+
+
+@pytest.mark.parametrize("time", [-5.0, 1e10, 1e300])
+def test_stamps_that_ros_does_not_have(tmp_path: Path, time: float) -> None:
+    session = oort.Session(Parameters())
+    session.start()
+    for k in range(3):
+        session.add_scan(room_scan(0.0, 0.0, 0.3 * k, time + k))
+    with pytest.raises(InputError, match="none that a message of ROS can have"):
+        export(session.map, Parameters(), "mcap", str(tmp_path / "x.mcap"))
+    assert not list(tmp_path.iterdir())
 
 
 def test_without_the_packages_rooms_are_left_out(

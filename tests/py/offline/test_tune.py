@@ -98,6 +98,17 @@ def test_a_recording_that_cannot_be_mapped_says_why(tmp_path: Path) -> None:
     assert "no laser scans" in told.why
 
 
+def test_a_search_that_is_damaged_or_has_no_trials_is_refused(
+    homes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for damage in (b"\xff\xfe\n", b"{\n", b"[1]\n", b"{}\n"):
+        (tmp_path / "study.log").write_bytes(damage)
+        assert main(_arguments(homes, tmp_path)) == 2
+        assert "choose another --out" in capsys.readouterr().err
+    assert main([*_arguments(homes, tmp_path), "--trials", "0"]) == 2
+    assert "one trial or more" in capsys.readouterr().err
+
+
 def test_axes() -> None:
     start = Parameters()
     assert parse_axis("linear_update", start) == Axis("linear_update", 0.05, 0.8, logarithmic=True)
@@ -107,6 +118,10 @@ def test_axes() -> None:
         "linear_updat": "linear_update",
         "linear_update=1": "LOW..HIGH",
         "linear_update=3..1": "must grow",
+        "linear_update=nan..1": "must grow",
+        "keep_views=1.2..1.8": "no whole number",
+        "linear_updat\udcff": "unknown parameter",
+        "aé" + "é" * 300: "unknown parameter",
         "linear_update=0..1": "lie within 0.001 to 100",
         "time_update": "say between which values",
         "robust_kernel=huber": "two or more of switchable, huber",

@@ -47,6 +47,7 @@ def test_a_token_may_be_given_and_counts_on_loopback_too() -> None:
         ("http://localhost:9999", False),
         ("http://evil.example", False),
         ("null", False),
+        ("http://[", False),
         (None, False),
     ],
 )

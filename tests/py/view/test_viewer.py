@@ -220,6 +220,7 @@ def test_a_view_that_only_shows(live: LiveSession) -> None:
         ("graph_loc/create", None, "space: give a name"),
         ("graph_loc/create_points", {"space": "a", "id": "b", "x": "1", "y": 0}, "x: give a number"),
         ("graph_loc/create_points", {"space": "a", "id": "b", "x": float("nan"), "y": 0}, "x: give a number"),
+        ("graph_loc/create_points", {"space": "a", "id": "b", "x": 10**400, "y": 0}, "x: give a number"),
         ("graph_loc/delete", {"space": "a", "id": "x" * 300}, "id: give a name"),
     ],
 )
@@ -254,6 +255,12 @@ def test_a_port_that_is_taken(shown: Viewer, live: LiveSession) -> None:
     port = int(_origin(shown).rpartition(":")[2])
     with pytest.raises(oort.OortError, match=f"127.0.0.1:{port} cannot be listened on: Address already in use"):
         Viewer(live, port=port)
+
+
+@pytest.mark.parametrize(("address", "port"), [("127.0.0.1", 99_999), ("127.0.0.1", -1), ("a" * 100, 0), ("a\0b", 0)])
+def test_a_port_and_an_address_that_cannot_be(live: LiveSession, address: str, port: int) -> None:
+    with pytest.raises(oort.OortError, match="cannot be listened on"):
+        Viewer(live, address=address, port=port)
 
 
 # ---- what is shown ----

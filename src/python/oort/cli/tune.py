@@ -55,6 +55,8 @@ def _parser() -> argparse.ArgumentParser:
 
 def _search(args: argparse.Namespace) -> Generator[str, None, dict[str, Any]]:
     """Yields what to print on the way and returns what tune.json holds."""
+    if args.trials < 1:
+        raise InputError(f"--trials {args.trials}: a search takes one trial or more")
     start = read_parameters(args.params)
     axes = tuple(parse_axis(text, start) for text in args.search)
     task = Task(tuple(args.recordings), start, axes, args.seed, max(1, args.at_once))

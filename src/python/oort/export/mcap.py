@@ -12,10 +12,11 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from oort._core import Map, OccupancyGrid
-from oort.errors import OortError
+from oort.errors import InputError, OortError
 from oort.recording.types import Pose
 
 _MAP, _SENSOR = "map", "laser"  # frames
+_END_OF_TIME = float((1 << 31) - 1)  # [s] beyond which a message's int32 cannot count
 _TOPICS = {
     "/map": "nav_msgs/msg/OccupancyGrid",
     "/trajectory": "nav_msgs/msg/Path",
@@ -27,8 +28,14 @@ _TOPICS = {
 def write_mcap(path: Path, map_: Map, grid: OccupancyGrid) -> None:
     """Writes /map and /trajectory once, and at each node's stamp /tf (map to laser) and /points (its scan).
 
-    Raises OortError if the file cannot be written.
+    Raises InputError if ROS has no such stamps, OortError if the file cannot be written.
     """
+    first_time, last_time = float(map_.cloud_times.min()), float(map_.cloud_times.max())
+    if not 0.0 <= first_time <= last_time < _END_OF_TIME:
+        raise InputError(
+            f"the nodes' stamps, {first_time:g} to {last_time:g} s, are none that a message of ROS can have: "
+            "they count from 1970, to 2038"
+        )
     store = get_typestore(Stores.ROS2_HUMBLE)
     messages = _Messages(store.types)
     stamps = np.round(1e9 * map_.cloud_times).astype(np.int64).tolist()

@@ -3,6 +3,7 @@
 """What nav2 reads: docks for its docking server, and a graph of the ways that were driven for its route server."""
 
 import io
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -77,13 +78,19 @@ def thin_route(
     ``edges`` (m, 2) are the ways driven between positions. Returns nodes (k, 2) and edges (l, 2), each once.
     """
     kept: list[int] = []
+    squares: dict[tuple[int, int], list[int]] = {}  # of a spacing's width: which of the kept lie there
     place = np.zeros(len(positions), dtype=np.int64)
-    for k, position in enumerate(positions):
-        distances = np.linalg.norm(positions[kept] - position, axis=1) if kept else np.zeros(0)
-        if len(distances) and distances.min() < spacing:
-            place[k] = int(distances.argmin())
+    for k, (x, y) in enumerate(positions.tolist()):
+        column, row = math.floor(x / spacing), math.floor(y / spacing)
+        around = sorted(
+            number for dx in (-1, 0, 1) for dy in (-1, 0, 1) for number in squares.get((column + dx, row + dy), ())
+        )
+        distances = np.linalg.norm(positions[[kept[number] for number in around]] - positions[k], axis=1)
+        if len(around) and distances.min() < spacing:
+            place[k] = around[int(distances.argmin())]
         else:
             place[k] = len(kept)
+            squares.setdefault((column, row), []).append(len(kept))
             kept.append(k)
     ends = np.sort(place[edges], axis=1) if len(edges) else edges
     ends = ends[ends[:, 0] != ends[:, 1]] if len(ends) else ends

@@ -96,10 +96,17 @@ def _text(value: Any) -> str:
 def _chains(map_: Map) -> int:
     """Runs of nodes that the chain's edges tie together: one for each session or trajectory segment."""
     edges = map_.edges
-    root = np.arange(len(map_))
+    parents = list(range(len(map_)))
+
+    def root(node: int) -> int:
+        while parents[node] != node:
+            parents[node] = parents[parents[node]]
+            node = parents[node]
+        return node
+
     for i, j in zip(edges["i"].tolist(), edges["j"].tolist(), strict=True):
-        root[root == root[j]] = root[i]
-    return len(np.unique(root))
+        parents[root(j)] = root(i)
+    return sum(parent == node for node, parent in enumerate(parents))
 
 
 def _area(map_: Map, parameters: Parameters) -> dict[str, Any]:

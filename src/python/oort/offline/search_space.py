@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which parameters a search may change, and between which values."""
 
+import math
 from dataclasses import dataclass
 
 from oort._core import ParameterEntry, Parameters, parameter_table, unknown_parameter
@@ -31,11 +32,15 @@ def parse_axis(text: str, start: Parameters) -> Axis:
     path, _, values = text.partition("=")
     entry = next((entry for entry in parameter_table() if entry.path == path), None)
     if entry is None:
-        raise ParameterError(unknown_parameter(path))
+        raise ParameterError(
+            unknown_parameter(path.encode(errors="replace").decode())
+        )  # a terminal's bytes may be no text
     if entry.type in ("bool", "string"):
         return _choices(entry, values)
-    low, high = _bounds(entry, values, float(start.get(path)))
     whole = entry.type == "integer"
+    low, high = _bounds(entry, values, float(start.get(path)))
+    if whole and math.floor(high) < math.ceil(low):
+        raise ParameterError(f"{path}={values}: there is no whole number between the bounds")
     return Axis(path, low, high, whole, logarithmic=low > 0.0 and high / low >= _FACTOR)
 
 
@@ -63,6 +68,6 @@ def _bounds(entry: ParameterEntry, values: str, start: float) -> tuple[float, fl
         low, high = float(first), float(last)
     except ValueError as error:
         raise ParameterError(f"{entry.path}={values}: bounds are two numbers, LOW..HIGH") from error
-    if not least <= low < high <= most:
+    if not least <= low < high <= most or not math.isfinite(high - low):
         raise ParameterError(f"{entry.path}={values}: bounds must grow and lie within {least:g} to {most:g}")
     return low, high

@@ -153,8 +153,9 @@ class Search:
 
     def _kept(self, trial: Trial) -> Score | None:
         try:
-            return Score(**json.loads(self._place(trial).read_text()))
-        except (OSError, ValueError, TypeError):
+            kept = Score(**json.loads(self._place(trial).read_text()))
+            return kept if math.isfinite(kept.error) else None
+        except (OSError, ValueError, TypeError, OverflowError, RecursionError):
             return None
 
 
@@ -181,8 +182,18 @@ def _open_study(folder: Path) -> "optuna.Study":
     except ImportError as error:
         raise InputError('oort tune needs Optuna: pip install "oort[tune]"') from error
     optuna.logging.set_verbosity(optuna.logging.ERROR)
-    storage = optuna.storages.JournalStorage(JournalFileBackend(str(folder / "study.log")))
-    return optuna.create_study(storage=storage, study_name="oort", load_if_exists=True)
+    log = folder / "study.log"
+    try:
+        storage = optuna.storages.JournalStorage(JournalFileBackend(str(log)))
+        study = optuna.create_study(storage=storage, study_name="oort", load_if_exists=True)
+        study.get_trials(deepcopy=False)  # reads what was tried
+    except OSError:
+        raise
+    except Exception as error:  # damage shows in many ways
+        raise InputError(
+            f"{log} is no search that can be gone on with ({type(error).__name__}: {error}); choose another --out"
+        ) from error
+    return study
 
 
 def _states() -> Any:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from oort.errors import InputError, OortError
+from oort.inputs import check_regular, quoted
 
 _Task = TypeVar("_Task")
 _Result = TypeVar("_Result")
@@ -78,8 +79,13 @@ def local_copy(recording: str, beside: Sequence[str] = ()) -> Iterator[str]:
         yield recording
         return
     with tempfile.TemporaryDirectory(prefix="oort-") as place:
-        path = Path(place) / recording.rstrip("/").rpartition("/")[2]
+        name = recording.partition("://")[2].rstrip("/").rpartition("/")[2]
+        if name in ("", ".", "..") or "\0" in name:
+            raise InputError(f"{quoted(recording)} does not end in the name of a recording")
+        path = Path(place) / name
         system, inner = _file_system(recording)
+        if "file" in system.protocol and os.path.exists(inner):
+            check_regular(Path(inner), recording)
         try:
             system.get(inner, str(path), recursive=system.isdir(inner))
             for ending in beside:
@@ -103,8 +109,8 @@ def fingerprint(recording: str) -> str:
     else:
         try:
             stat = os.stat(recording)
-        except OSError as error:
-            raise InputError(f"{recording} does not exist") from error
+        except (OSError, ValueError) as error:
+            raise InputError(f"{quoted(recording)} does not exist") from error
         told = f"{os.path.abspath(recording)} {stat.st_size} {stat.st_mtime_ns}"
     return hashlib.sha256(told.encode()).hexdigest()
 
@@ -121,8 +127,8 @@ def _file_system(url: str) -> tuple[Any, str]:
         raise InputError(f'{url}: URLs need fsspec: pip install "oort[cluster]"') from error
     try:
         system, inner = url_to_fs(url)
-    except (ImportError, ValueError) as error:
-        raise InputError(f"{url}: {error}") from error
+    except Exception as error:  # each kind of storage has its own
+        raise InputError(f"{quoted(url)}: {str(error) or type(error).__name__}") from error
     return system, str(inner)
 
 

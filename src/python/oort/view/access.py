@@ -28,7 +28,10 @@ class Access:
 
     def admits_origin(self, origin: str | None, host: str) -> bool:
         """Whether a request that does something comes from this server's own page: browsers say from where."""
-        return origin is not None and urlsplit(origin).netloc.lower() == host.lower()
+        try:
+            return origin is not None and urlsplit(origin).netloc.lower() == host.lower()
+        except ValueError:  # no address at all
+            return False
 
     def admits_token(self, token: str) -> bool:
         """Whether a visitor knows the token."""

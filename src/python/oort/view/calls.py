@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from oort.errors import InputError
+from oort.inputs import quoted
 from oort.live import LiveSession
 
 _WITHOUT_ARGUMENTS = frozenset({"map/pause", "map/resume_from_paused", "map/notify_docked", "map/stop"})
@@ -27,7 +28,7 @@ def make_call(live: LiveSession, call: Any, args: Any) -> Any:
         return live.call(call, [[_text(given, "space")], [point], [_text(given, "id")]])
     if call == "graph_loc/delete":
         return live.call(call, [_text(given, "space"), _text(given, "id")])
-    raise InputError(f"{call!r} is no call that this page may make")
+    raise InputError(f"{quoted(call)} is no call that this page may make")
 
 
 def _text(args: dict[str, Any], name: str) -> str:
@@ -39,6 +40,10 @@ def _text(args: dict[str, Any], name: str) -> str:
 
 def _number(args: dict[str, Any], name: str) -> float:
     value = args.get(name)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    try:
+        number = math.nan if isinstance(value, bool) or not isinstance(value, int | float) else float(value)
+    except OverflowError:  # a whole number of any length is JSON
+        number = math.inf
+    if not math.isfinite(number):
         raise InputError(f"{name}: give a number of metres")
-    return float(value)
+    return number

@@ -17,6 +17,7 @@ PORT = 8765
 """where the page is unless asked otherwise"""
 
 _LOOPBACK = "127.0.0.1"
+_LAST_PORT = 65_535
 _START = 10.0  # [s] that the server may take to listen
 _TOKEN = "OORT_VIEW_TOKEN"  # the environment variable
 
@@ -39,6 +40,8 @@ class Viewer:
         token: str = "",
     ) -> None:
         """Begins to serve; port 0 is any that is free. Raises OortError without tornado, or if the port is taken."""
+        if not 0 <= port <= _LAST_PORT:  # the system would take the rest of its division
+            raise OortError(f"{address}:{port} cannot be listened on: ports go from 1 to {_LAST_PORT}")
         session = live.session if isinstance(live, LiveMapper) else live
         session.draws = True
         self._access = access_for(address, token or os.environ.get(_TOKEN, ""))
@@ -109,9 +112,10 @@ class Viewer:
         server = HTTPServer(application, max_body_size=65_536, max_buffer_size=1_048_576, idle_connection_timeout=60.0)
         try:
             sockets = bind_sockets(self._port, self._address)
-        except OSError as error:
+        except (OSError, ValueError) as error:  # ValueError: that is no address
+            why = error.strerror if isinstance(error, OSError) else error
             raise OortError(
-                f"{self._address}:{self._port} cannot be listened on: {error.strerror}; choose another port"
+                f"{self._address}:{self._port} cannot be listened on: {why}; choose another port or address"
             ) from None
         server.add_sockets(sockets)
         self._port = int(sockets[0].getsockname()[1])
