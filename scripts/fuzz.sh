@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 [ $# -gt 0 ] && shift
 in_cpp=(map parameters)
-in_python=(events carmen robotlaser g2o tum relations yaml pgm)
+in_python=(events carmen robotlaser g2o tum relations yaml pgm axis words requests laser echoes transform static imu)
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || targets=("${in_cpp[@]}" "${in_python[@]}")
 
@@ -29,7 +29,7 @@ for target in "${targets[@]}"; do
   if [[ " ${in_cpp[*]} " == *" $target "* ]]; then
     command=("build/fuzz/fuzz_$target" "${options[@]}" "$corpus" "tests/fuzz/corpus/$target")
   else
-    .venv/bin/python tests/fuzz/readers.py --seed "$target" > "$corpus/seed"
+    .venv/bin/python tests/fuzz/readers.py --seeds "$target" "$corpus"
     command=(.venv/bin/python tests/fuzz/readers.py "$target" "${options[@]}" "$corpus")
   fi
   echo "== $target"

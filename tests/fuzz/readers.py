@@ -1,22 +1,32 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""What reads files in Python: events, CARMEN logs, g2o, TUM, relations, map_server's picture and description.
+"""What reads in Python: events, logs, bags, graphs, trajectories, pictures, maps by the command, requests to the page.
 
     .venv/bin/python tests/fuzz/readers.py READER [atheris's or libFuzzer's options]      with atheris, by coverage
-    .venv/bin/python tests/fuzz/readers.py --count N                                      all of them, by chance alone
+    .venv/bin/python tests/fuzz/readers.py --count N [READER...]                          by chance alone
+    .venv/bin/python tests/fuzz/readers.py --seeds READER FOLDER                          writes what to begin with
 
 Whatever is read, nothing but an OortError may come of it. What is by chance is the same each time.
 """
 
+import gc
+import math
 import os
+import struct
 import sys
 import tempfile
+import time
+import types
 import warnings
 from collections.abc import Callable
 from pathlib import Path
 
+import hostile_bags
+import hostile_maps
+import hostile_requests
 import numpy as np
 
+from oort import Parameters
 from oort.errors import OortError
 from oort.evaluation.graph import solve_graph
 from oort.evaluation.trajectories import evaluate_ate, evaluate_relations
@@ -25,11 +35,12 @@ from oort.export.g2o import read_g2o
 from oort.export.map_server import read_map_server
 from oort.export.tum import read_tum
 from oort.offline.replay import ReplayOptions, replay
+from oort.offline.search_space import parse_axis
 from oort.recording import open_recording
 
 _TUM = b"0.0 0 0 0 0 0 0 1\n1.0 1 0.5 0 0 0 0.1 0.99\n2.0 2 1 0 0 0 0.2 0.98\n3.0 3 1 0 0 0 0.2 0.98\n"
 _RANGES = " ".join(f"{2 + 0.01 * k:.2f}" for k in range(40))
-SEEDS = {
+_TEXTS = {
     "events": b'[{"t": 0, "call": "map/start", "args": [""]}, {"t": 1.5, "call": "graph_loc/create"'
     b', "args": ["a", "b"]}, {"t": 2, "call": "map/notify_docked"}, {"t": 2, "call": "graph_loc/create_points"'
     b', "args": [["a"], [[1, 0]], ["x"]]}]',
@@ -49,6 +60,9 @@ SEEDS = {
     b"free_thresh: 0.196\n",
     "pgm": b"P5\n# made up\n4 3\n255\n" + bytes(12),
 }
+_AXES = (b"linear_update= 0.1 .. 0.9", b"keep_views= 1 .. 9", b"use_imu= true , false", b"linear_update")
+_TOPICS = {"laser": "/scan", "echoes": "/echoes", "transform": "/tf", "static": "/tf_static", "imu": "/imu"}
+"""Bags with hostile messages of a topic."""
 
 
 def _read_events(path: Path) -> None:
@@ -75,12 +89,31 @@ def _read_relations(path: Path) -> None:
 
 
 def _read_yaml(path: Path) -> None:
-    _beside(path, "map.pgm", SEEDS["pgm"])
+    _beside(path, "map.pgm", _TEXTS["pgm"])
     read_map_server(path)
 
 
 def _read_pgm(path: Path) -> None:
-    read_map_server(_beside(path, "m.yaml", SEEDS["yaml"].replace(b"map.pgm", path.name.encode())))
+    read_map_server(_beside(path, "m.yaml", _TEXTS["yaml"].replace(b"map.pgm", path.name.encode())))
+
+
+def _read_axis(path: Path) -> None:
+    axis = parse_axis(path.read_text(errors="surrogateescape").replace(" ", ""), Parameters())
+    assert axis.choices or math.isfinite(axis.high - axis.low)
+
+
+def seeds(reader: str) -> list[bytes]:
+    """What to begin with."""
+    if reader in _TOPICS:
+        with tempfile.TemporaryDirectory() as folder:
+            return [hostile_bags.seed(_TOPICS[reader], Path(folder))]
+    if reader == "words":
+        return [(hostile_maps.CORPUS / name).read_bytes() for name in ("loop", "small")]
+    if reader == "axis":
+        return list(_AXES)
+    if reader == "requests":
+        return list(hostile_requests.SEEDS)
+    return [_TEXTS[reader]]
 
 
 def _beside(path: Path, name: str, data: bytes) -> Path:
@@ -98,6 +131,10 @@ READERS: dict[str, Callable[[Path], None]] = {
     "relations": _read_relations,
     "yaml": _read_yaml,
     "pgm": _read_pgm,
+    "axis": _read_axis,
+    "words": hostile_maps.use,
+    "requests": hostile_requests.send,
+    **{name: hostile_bags.reader(topic) for name, topic in _TOPICS.items()},
 }
 _ENDINGS = {"carmen": ".clf", "robotlaser": ".clf", "yaml": ".yaml", "pgm": ".pgm", "g2o": ".g2o"}
 _WORDS = (
@@ -106,10 +143,10 @@ _WORDS = (
 )
 
 
-def changed(rng: np.random.Generator, data: bytes) -> bytes:
+def changed(rng: np.random.Generator, data: bytes, most: int = 4) -> bytes:
     """Data with some bytes, words or lines changed."""
     text = bytearray(data)
-    for _ in range(int(rng.integers(1, 5))):
+    for _ in range(int(rng.integers(1, most + 1))):
         at, end = sorted(int(k) for k in rng.integers(0, len(text) + 1, 2))
         match int(rng.integers(0, 6)):
             case 0:
@@ -123,6 +160,41 @@ def changed(rng: np.random.Generator, data: bytes) -> bytes:
                 words[int(rng.integers(0, len(words)))] = bytearray(_WORDS[int(rng.integers(0, len(_WORDS)))])
                 text = bytearray(b" ".join(words))
     return bytes(text)
+
+
+def changed_message(rng: np.random.Generator, data: bytes) -> bytes:
+    """A message with odd numbers, of any size, in the place of some bytes."""
+    message = bytearray(data)
+    for _ in range(int(rng.integers(1, 4))):
+        odd = float(rng.choice([0.0, -1.0, 1e-310, 1e9, 1e300, -1e300, math.inf, -math.inf, math.nan]))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            choices = [
+                struct.pack("<d", odd),
+                np.float32(odd).tobytes(),
+                struct.pack("<I", int(rng.choice([0, 1, 255, 1 << 16, 1 << 31, (1 << 32) - 1]))),
+                bytes([int(rng.integers(0, 256))]),
+            ]
+        word = choices[int(rng.integers(0, len(choices)))]
+        at = int(rng.integers(0, len(message) + 1))
+        if rng.random() < 0.1:
+            del message[at : at + int(rng.integers(0, 20))]
+        else:
+            message[at : at + len(word)] = word
+    return bytes(message)
+
+
+def changed_a_little(rng: np.random.Generator, data: bytes) -> bytes:
+    """Data with one change."""
+    return changed(rng, data, 1)
+
+
+_CHANGES: dict[str, Callable[[np.random.Generator, bytes], bytes]] = {
+    "axis": changed_a_little,
+    "requests": changed_a_little,
+    "words": hostile_maps.changed,
+    **dict.fromkeys(_TOPICS, changed_message),
+}
 
 
 def try_one(reader: str, data: bytes, folder: Path) -> bool:
@@ -139,26 +211,58 @@ def try_one(reader: str, data: bytes, folder: Path) -> bool:
 def by_chance(reader: str, count: int, seed: int = 1) -> int:
     """Reads so many changed inputs; how many could be read."""
     rng = np.random.Generator(np.random.PCG64(seed))
+    change, begin = _CHANGES.get(reader, changed), seeds(reader)
+    readable = 0
     with tempfile.TemporaryDirectory() as folder:
-        assert try_one(reader, SEEDS[reader], Path(folder)), "the seed cannot be read"
-        return sum(try_one(reader, changed(rng, SEEDS[reader]), Path(folder)) for _ in range(count))
+        for data in begin:
+            assert try_one(reader, data, Path(folder)) or reader == "requests", "the seed cannot be read"
+        for k in range(count):
+            data = change(rng, begin[k % len(begin)])
+            try:
+                readable += try_one(reader, data, Path(folder))
+            except BaseException:
+                found = Path(tempfile.mkdtemp(prefix="oort-fuzz-")) / reader
+                found.write_bytes(data)
+                print(f"{reader}: input {k} of seed {seed} is kept in {found}", file=sys.stderr)
+                raise
+    return readable
 
 
 def _by_coverage(reader: str) -> None:
     import atheris
 
-    folder = Path(tempfile.mkdtemp())
-    atheris.instrument_all()
-    atheris.Setup([sys.argv[0], *sys.argv[2:]], lambda data: try_one(reader, data, folder) and None)
+    folder, change, begin = Path(tempfile.mkdtemp()), _CHANGES.get(reader, changed), seeds(reader)
+
+    def mutated(data: bytes, max_size: int, seed: int) -> bytes:
+        """Half of them by libFuzzer, half as by chance alone, which knows what a file of this kind is made of."""
+        if seed % 2:
+            return bytes(atheris.Mutate(data, max_size))
+        rng = np.random.Generator(np.random.PCG64(seed))
+        return change(rng, data if len(data) > 16 else begin[seed // 2 % len(begin)])[:max_size]
+
+    for function in [thing for thing in gc.get_objects() if isinstance(thing, types.FunctionType)]:
+        if function.__module__.partition(".")[0] in ("oort", "rosbags"):  # all of Python would take a minute
+            atheris.instrument_func(function)
+    atheris.Setup(
+        [sys.argv[0], *sys.argv[2:]], lambda data: try_one(reader, data, folder) and None, custom_mutator=mutated
+    )
     atheris.Fuzz()
 
 
-if __name__ == "__main__":
+def _main(words: list[str]) -> None:
     warnings.simplefilter("ignore")
-    if sys.argv[1] == "--seed":
-        sys.stdout.buffer.write(SEEDS[sys.argv[2]])
-    elif sys.argv[1] == "--count":
-        for name in READERS:
-            print(f"{name}: {by_chance(name, int(sys.argv[2]), int(os.environ.get('SEED', '1')))} could be read")
+    os.environ["OORT_DEBUG"] = "1"  # faults of Oort's own come through
+    if words[0] == "--seeds":
+        for k, data in enumerate(seeds(words[1])):
+            Path(words[2], f"seed{k}").write_bytes(data)
+    elif words[0] == "--count":
+        for name in words[2:] or READERS:
+            started = time.monotonic()
+            readable = by_chance(name, int(words[1]), int(os.environ.get("SEED", "1")))
+            print(f"{name}: {readable} of {words[1]} could be read, {time.monotonic() - started:.1f} s", flush=True)
     else:
-        _by_coverage(sys.argv[1])
+        _by_coverage(words[0])
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1:])
