@@ -2,14 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Kills a mapping process at random instants, again and again, and looks at what is on the disk.
 
-    .venv/bin/python bench/kills.py [--count N] [--seed N]
+    .venv/bin/python bench/kills.py [--count N] [--seed N] [--of session|replay]
 
-A process maps a drive at one path and saves all the time. After each kill -9 the map there must be whole, and as new
-as the last save that the process told of; the next process begins beside it (the map is kept as .previous) and goes on.
+session: a process maps a drive at one path with the live session of the nodes, and saves all the time. After each
+kill -9 the map there must be whole, and as new as the last save that the process told of; the next process begins
+beside it (the map is kept as .previous) and goes on.
+replay: ``oort replay`` maps one of two drives over the map of the other. After each kill the map must be one of them,
+whole, and no file of the results half written.
+
 Prints the kills, how often there was no map yet, and the losses; the exit status is 1 if anything was lost.
 """
 
 import argparse
+import contextlib
+import json
 import os
 import signal
 import subprocess
@@ -21,6 +27,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parent))
+
+from hostile.drives import write_log
 from oort import MapFileError, load_map
 
 _CHILD = """
@@ -72,6 +81,49 @@ def kill_often(count: int, seed: int) -> Counts:
     return Counts(count, without_map, lost)
 
 
+def kill_replays(count: int, seed: int) -> Counts:
+    """Kills so many replays."""
+    rng = np.random.Generator(np.random.PCG64(seed))
+    without_map, lost = 0, []
+    with tempfile.TemporaryDirectory() as folder:
+        logs, whole = [f"{folder}/{name}.clf" for name in ("short", "long")], []
+        for log, scans in zip(logs, (60, 200), strict=True):
+            write_log(log, scans)
+            subprocess.run(_replay(log, f"{folder}/{scans}", f"{folder}/out"), check=True, stdout=subprocess.DEVNULL)
+            whole.append(len(load_map(f"{folder}/{scans}")))
+        base, out = f"{folder}/home", Path(folder, "out")
+        longest = 2.0  # [s] of a replay; learned, for it depends on what else the machine does
+        for k in range(count):
+            with subprocess.Popen(_replay(logs[k % 2], base, str(out)), stdout=subprocess.DEVNULL) as child:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    child.wait(longest * float(rng.uniform(0.1, 1.0)))
+                longest *= 1.05 if child.poll() is None else 0.8
+                child.kill()
+            try:
+                nodes = len(load_map(base))
+            except MapFileError as error:
+                nodes = 0
+                without_map += 1
+                if any(os.path.lexists(base + ending) for ending in (".md5", ".map_capnp")):
+                    lost.append(f"kill {k}: {error}")
+            if nodes and nodes not in whole:
+                lost.append(f"kill {k}: {nodes} nodes, not {whole}")
+            lost += [f"kill {k}: {path} is half written" for path in out.glob("*.json") if not _is_json(path)]
+    return Counts(count, without_map, lost)
+
+
+def _replay(log: str, base: str, out: str) -> list[str]:
+    return [sys.executable, "-m", "oort.replay", log, "--map", base, "--out", out, "--quiet"]
+
+
+def _is_json(path: Path) -> bool:
+    try:
+        json.loads(path.read_text())
+    except ValueError:
+        return False
+    return True
+
+
 def _run_and_kill(base: str, seconds: float) -> int:
     """Runs a process so long after it began to map; how many nodes it told as saved."""
     command = [sys.executable, "-c", _CHILD, base, str(Path(__file__).parent)]
@@ -90,8 +142,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Kills mapping processes and looks at what they leave.")
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--of", choices=["session", "replay"], default="session")
     args = parser.parse_args()
-    counts = kill_often(args.count, args.seed)
+    counts = (kill_often if args.of == "session" else kill_replays)(args.count, args.seed)
     print(f"{counts.kills} kills, {counts.without_map} before the first save, {len(counts.lost)} losses")
     print("\n".join(counts.lost))
     return int(bool(counts.lost))

@@ -29,6 +29,17 @@ def scan_at(k: int, *, change: Readings | None = None, jump: float = 0.0, range_
     return Scan(values, *limits, 0.1 * k, stamp=f"{0.1 * k:.1f}", odometry=(x + jump, 0.0, theta))
 
 
+def write_log(path: str, scans: int) -> None:
+    """The begin of the drive as a CARMEN log."""
+    with open(path, "w") as stream:
+        for k in range(scans):
+            scan = scan_at(k)
+            ranges = " ".join(f"{reading:.2f}" for reading in scan.ranges.tolist())
+            x, y, theta = scan.odometry
+            pose = f"{x:.6f} {y:.6f} {theta:.6f}"
+            stream.write(f"FLASER {len(scan.ranges)} {ranges} {pose} {pose} {scan.time:.1f} host {scan.time:.1f}\n")
+
+
 def driven(scans: int = 60, change: Readings | None = None, range_max: float = 30.0) -> Session:
     """A session that mapped a drive."""
     session = Session(Parameters())
