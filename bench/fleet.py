@@ -59,7 +59,7 @@ def run(recordings: list[str], out: Path, jobs: int, cluster: str | None, after:
         "kept": kept,
         "failed": failed,
         "wall_seconds": time.monotonic() - started,
-        "cpu_seconds": cpu,
+        "cpu_seconds": cpu if cluster is None else None,  # the workers' is not ours to count
         "mapping_cpu_seconds": sum(each["cpu_seconds"] for each in figures),
         "recorded_seconds": sum(each["recorded_seconds"] for each in figures),
         "uncertain": sum(each["uncertain"] > 0.5 for each in figures),
@@ -102,9 +102,9 @@ def tell(title: str, figures: dict[str, Any]) -> None:
     failed, doubtful, kept = len(figures["failed"]), figures["uncertain"], figures["kept"]
     print(f"{title}: {figures['drives']} drives of {figures['recorded_seconds'] / figures['drives']:.0f} s")
     print(f"  failed {failed}, mostly uncertain {doubtful}, kept from before {kept}")
+    print(f"  mapping {mapping / figures['drives']:.2f} CPU s each; wall {figures['wall_seconds']:.0f} s")
     if count and cpu:
-        print(f"  {count / cpu * 3600:.0f} drives a core hour: {cpu / count:.2f} CPU s each")
-        print(f"  of these mapping {mapping / figures['drives']:.2f} s; wall {figures['wall_seconds']:.0f} s")
+        print(f"  {count / cpu * 3600:.0f} drives a core hour: {cpu / count:.2f} CPU s each, all counted")
     print(*(f"  {each}" for each in figures["failed"][:10]), sep="\n")
 
 
