@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 [ $# -gt 0 ] && shift
 in_cpp=(map parameters)
-in_python=(events carmen robotlaser g2o tum relations yaml pgm axis words requests laser echoes transform static imu)
+in_python=(events carmen robotlaser g2o tum relations yaml pgm house axis words requests laser echoes transform static imu)
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || targets=("${in_cpp[@]}" "${in_python[@]}")
 

@@ -12,6 +12,7 @@ Whatever is read, nothing but an OortError may come of it. What is by chance is 
 import gc
 import math
 import os
+import re
 import struct
 import sys
 import tempfile
@@ -37,6 +38,8 @@ from oort.export.tum import read_tum
 from oort.offline.replay import ReplayOptions, replay
 from oort.offline.search_space import parse_axis
 from oort.recording import open_recording
+from oort.simulate.plan import furnish_plan
+from oort.simulate.plan_files import read_plan
 
 _TUM = b"0.0 0 0 0 0 0 0 1\n1.0 1 0.5 0 0 0 0.1 0.99\n2.0 2 1 0 0 0 0.2 0.98\n3.0 3 1 0 0 0 0.2 0.98\n"
 _RANGES = " ".join(f"{2 + 0.01 * k:.2f}" for k in range(40))
@@ -58,6 +61,12 @@ _TEXTS = {
     "relations": b"0.0 1.0 1 0.5 0 0 0 0.2\n1.0 2.0 1 0.5 0 0 0 0.2\n",
     "yaml": b"image: map.pgm\nmode: trinary\nresolution: 0.05\norigin: [-1, -2, 0]\nnegate: 0\noccupied_thresh: 0.65\n"
     b"free_thresh: 0.196\n",
+    "house": b'{"rooms": [{"roomType": "LivingRoom", "floorPolygon": [{"x": 0, "z": 0}, {"x": 0, "z": 4}, '
+    b'{"x": 5, "z": 4}, {"x": 5, "z": 0}]}, {"roomType": "Kitchen", "floorPolygon": [{"x": 5, "z": 0}, '
+    b'{"x": 5, "z": 4}, {"x": 8, "z": 4}, {"x": 8, "z": 0}]}], "walls": [{"id": "w", "polygon": [{"x": 5, "z": 0}, '
+    b'{"x": 5, "z": 4}]}], "doors": [{"room0": "a", "room1": "b", "wall0": "w", "holePolygon": [{"x": 1, "y": 0}, '
+    b'{"x": 2, "y": 2}]}], "objects": [{"id": "o", "axisAlignedBoundingBox": {"center": {"x": 1, "y": 0.5, "z": 1}, '
+    b'"size": {"x": 0.5, "y": 1, "z": 0.5}}}]}',
     "pgm": b"P5\n# made up\n4 3\n255\n" + bytes(12),
 }
 _AXES = (b"linear_update= 0.1 .. 0.9", b"keep_views= 1 .. 9", b"use_imu= true , false", b"linear_update")
@@ -97,6 +106,10 @@ def _read_pgm(path: Path) -> None:
     read_map_server(_beside(path, "m.yaml", _TEXTS["yaml"].replace(b"map.pgm", path.name.encode())))
 
 
+def _read_house(path: Path) -> None:
+    furnish_plan(read_plan(path), np.random.Generator(np.random.PCG64(1)))
+
+
 def _read_axis(path: Path) -> None:
     axis = parse_axis(path.read_text(errors="surrogateescape").replace(" ", ""), Parameters())
     assert axis.choices or math.isfinite(axis.high - axis.low)
@@ -113,6 +126,8 @@ def seeds(reader: str) -> list[bytes]:
         return list(_AXES)
     if reader == "requests":
         return list(hostile_requests.SEEDS)
+    if reader == "house":  # numbers are words of their own, which can be changed alone
+        return [re.sub(rb": (\d[\d.]*)", rb": \1 ", _TEXTS[reader])]
     return [_TEXTS[reader]]
 
 
@@ -132,11 +147,12 @@ READERS: dict[str, Callable[[Path], None]] = {
     "yaml": _read_yaml,
     "pgm": _read_pgm,
     "axis": _read_axis,
+    "house": _read_house,
     "words": hostile_maps.use,
     "requests": hostile_requests.send,
     **{name: hostile_bags.reader(topic) for name, topic in _TOPICS.items()},
 }
-_ENDINGS = {"carmen": ".clf", "robotlaser": ".clf", "yaml": ".yaml", "pgm": ".pgm", "g2o": ".g2o"}
+_ENDINGS = {"house": ".json", "carmen": ".clf", "robotlaser": ".clf", "yaml": ".yaml", "pgm": ".pgm", "g2o": ".g2o"}
 _WORDS = (
     *(b"nan", b"inf", b"-inf", b"1e308", b"-1e308", b"1e-320", b"1e17", b"0", b"-1", b"1_0", b"99999999999999999999"),
     *(b"\0", b"\xff", b"\xed\xa0\x80", b"\n", b" ", b"[", b'"', b"{", b"#", b"null", b"true", b"0x10", b"1" * 5000),
@@ -192,6 +208,7 @@ def changed_a_little(rng: np.random.Generator, data: bytes) -> bytes:
 _CHANGES: dict[str, Callable[[np.random.Generator, bytes], bytes]] = {
     "axis": changed_a_little,
     "requests": changed_a_little,
+    "house": changed_a_little,
     "words": hostile_maps.changed,
     **dict.fromkeys(_TOPICS, changed_message),
 }

@@ -161,6 +161,15 @@ def test_a_house_that_is_none_is_told(content: Any, told: str, tmp_path: Path) -
         read_plan(path)
 
 
+def test_a_floor_that_spans_too_much_is_told(tmp_path: Path) -> None:
+    afar = [{"x": x, "z": z} for x, z in ((900, 900), (900, 904), (904, 904), (904, 900))]
+    content = house()
+    content["rooms"].append({"roomType": "Bedroom", "floorPolygon": afar})
+    (tmp_path / "house.json").write_text(json.dumps(content))
+    with pytest.raises(InputError, match="the floor spans 904 x 904 m; at most 300 m do"):
+        simulate_drive(1, SHORT, read_plan(tmp_path / "house.json"))
+
+
 def test_a_picture_that_is_no_plan_is_told(tmp_path: Path, folder: Path) -> None:
     dark = tmp_path / "dark.png"
     Image.new("L", (50, 50), 0).save(dark)

@@ -16,6 +16,7 @@ from oort.simulate.furniture import Piece
 from oort.simulate.home import DOCK_FRONT, DOCK_SIZE, DOCK_TO_BASE, Home, Room
 
 MOST_FLOOR = 500.0  # m^2 that the robot can reach; a tour of more takes an hour
+WIDEST = 300.0  # m from end to end; the grid of free space spans it
 TILE = 4.0  # m; the sides of the squares that a tour sees to one after the other
 FREE_BEFORE = 0.35  # m of clearance on the way onto the dock, from 0.4 m before it
 DOCK_CLEARANCE = (0.19, 0.31)  # m from the docked base to the wall behind it
@@ -45,6 +46,8 @@ def furnish_plan(plan: Plan, rng: np.random.Generator) -> tuple[Home, FloorPlan,
     import shapely
 
     x0, y0, x1, y1 = plan.floor.bounds
+    if max(x1 - x0, y1 - y0) > WIDEST:
+        raise InputError(f"{plan.source}: the floor spans {x1 - x0:.0f} x {y1 - y0:.0f} m; at most {WIDEST:.0f} m do")
     grid = ClearanceGrid(Rect(x0, y0, x1, y1).grown(0.3, 0.3))
     x, y = np.broadcast_arrays(*grid.centres())
     shapely.prepare(plan.floor)
