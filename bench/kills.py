@@ -15,13 +15,16 @@ Prints the kills, how often there was no map yet, and the losses; the exit statu
 
 import argparse
 import contextlib
+import itertools
 import json
 import os
 import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -59,13 +62,23 @@ class Counts(NamedTuple):
     """what was lost, a sentence for each"""
 
 
+def _until_interrupted(count: int) -> Iterator[int]:
+    """Counts up; Ctrl-C ends it after the kill at hand."""
+    ended = threading.Event()
+    before = signal.signal(signal.SIGINT, lambda *_: ended.set())
+    try:
+        yield from itertools.takewhile(lambda _: not ended.is_set(), range(count))
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def kill_often(count: int, seed: int) -> Counts:
     """Kills so many processes."""
     rng = np.random.Generator(np.random.PCG64(seed))
     without_map, lost = 0, []
     with tempfile.TemporaryDirectory() as folder:
         base = f"{folder}/home"
-        for k in range(count):
+        for k in _until_interrupted(count):
             told = _run_and_kill(base, float(rng.uniform(0.0, 0.4)))
             try:
                 nodes = len(load_map(base))
@@ -78,7 +91,7 @@ def kill_often(count: int, seed: int) -> Counts:
                 lost.append(f"kill {k}: {told} nodes were told as saved, {nodes} are there")
             if sorted(Path(folder).glob("*.tmp")):
                 lost.append(f"kill {k}: temporary files are left")
-    return Counts(count, without_map, lost)
+    return Counts(k + 1, without_map, lost)
 
 
 def kill_replays(count: int, seed: int) -> Counts:
@@ -93,7 +106,7 @@ def kill_replays(count: int, seed: int) -> Counts:
             whole.append(len(load_map(f"{folder}/{scans}")))
         base, out = f"{folder}/home", Path(folder, "out")
         longest = 2.0  # [s] of a replay; learned, for it depends on what else the machine does
-        for k in range(count):
+        for k in _until_interrupted(count):
             with subprocess.Popen(_replay(logs[k % 2], base, str(out)), stdout=subprocess.DEVNULL) as child:
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     child.wait(longest * float(rng.uniform(0.1, 1.0)))
@@ -109,7 +122,7 @@ def kill_replays(count: int, seed: int) -> Counts:
             if nodes and nodes not in whole:
                 lost.append(f"kill {k}: {nodes} nodes, not {whole}")
             lost += [f"kill {k}: {path} is half written" for path in out.glob("*.json") if not _is_json(path)]
-    return Counts(count, without_map, lost)
+    return Counts(k + 1, without_map, lost)
 
 
 def _replay(log: str, base: str, out: str) -> list[str]:
