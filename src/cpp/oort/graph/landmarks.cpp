@@ -63,7 +63,7 @@ class HuberProblem {
     const std::vector<bool> anchors = find_anchors(graph);
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       problem_.AddParameterBlock(nodes_[k].data(), 3);
-      if (anchors[k] || k < options.first_free_node) problem_.SetParameterBlockConstant(nodes_[k].data());
+      if (anchors[k] || options.holds(k)) problem_.SetParameterBlockConstant(nodes_[k].data());
     }
   }
 

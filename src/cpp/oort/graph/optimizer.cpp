@@ -56,12 +56,12 @@ std::vector<SolverEdge> solver_edges(const Graph& graph, Whitening whitening) {
   return edges;
 }
 
-std::vector<int> variables_of(const Graph& graph, std::uint64_t first_free_node) {
+std::vector<int> variables_of(const Graph& graph, const OptimizerOptions& options) {
   const std::vector<bool> anchors = find_anchors(graph);
   std::vector<int> variables(graph.nodes.size(), -1);
   int count = 0;
   for (std::size_t k = 0; k < variables.size(); ++k) {
-    if (!anchors[k] && k >= first_free_node) variables[k] = count++;
+    if (!anchors[k] && !options.holds(k)) variables[k] = count++;
   }
   return variables;
 }
@@ -110,8 +110,8 @@ OptimizerSummary optimize(Graph& graph, const OptimizerOptions& options) {
   }
   check_options(options);
   check_graph(graph);
-  GraphSolver solver(poses_of(graph), variables_of(graph, options.first_free_node),
-                     solver_edges(graph, options.whitening), options.switchable_constraint_scale);
+  GraphSolver solver(poses_of(graph), variables_of(graph, options), solver_edges(graph, options.whitening),
+                     options.switchable_constraint_scale);
   solver.set_meter(options.meter);
   OptimizerSummary summary;
   summary.initial_cost = robust_cost(solver);

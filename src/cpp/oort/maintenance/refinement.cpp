@@ -18,11 +18,12 @@
 namespace oort {
 namespace {
 
-std::vector<int> variables_of(const Graph& graph, std::uint64_t first_free) {
+std::vector<int> variables_of(const Graph& graph, const std::vector<bool>& held) {
   std::vector<int> variables;
   int count = 0;
   for (const bool is_anchor : find_anchors(graph)) {
-    variables.push_back(is_anchor || variables.size() < first_free ? -1 : count++);
+    const bool is_held = variables.size() < held.size() && held[variables.size()];
+    variables.push_back(is_anchor || is_held ? -1 : count++);
   }
   return variables;
 }
@@ -109,14 +110,14 @@ std::vector<Pose2> solved(const std::vector<Pose2>& poses, const std::vector<int
 
 }  // namespace
 
-RefinementCounts refine(Map& map, std::uint64_t first_free) {
+RefinementCounts refine(Map& map, const std::vector<bool>& held) {
   RefinementCounts counts;
   std::vector<std::vector<SurfacePiece>> pieces;
   for (const PointCloud& cloud : map.clouds) pieces.push_back(surface_pieces(cloud));
   std::vector<Pose2> poses;
   for (const Node& node : map.graph.nodes) poses.push_back(node.pose);
   const std::vector<ViewPair> pairs = view_pairs(poses, pieces);
-  const std::vector<int> variables = variables_of(map.graph, first_free);
+  const std::vector<int> variables = variables_of(map.graph, held);
   const std::vector<SolverEdge> known = known_edges(map.graph);
 
   ScanEdges scans = edges_between(pieces, pairs, poses, RefinementTuning::kInitialDistance, false);

@@ -41,6 +41,8 @@ void GlobalSlam::begin_session() {
   loops_ = LoopClosureBuilder(parameters_);
   not_looked_from_.clear();
   session_begin_ = map_.node_count();
+  former_.reset();
+  former_stays_ = former_gave_way_ = false;
   segment_search_ = SegmentSearch(parameters_);
 }
 
@@ -84,9 +86,10 @@ Correction GlobalSlam::work(WorkMeter& meter) {
 Correction GlobalSlam::finish() {
   Correction all = link_docks();
   work_off(all);
+  former_gave_way_ = false;  // all that there is to say was said
   if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(MapperTuning::kFinalIterations);
   tie_loose_parts(all);
-  if (parameters_.final_refinement) counts_.refinement = refine(map_.edit(), first_free());
+  if (parameters_.final_refinement) counts_.refinement = refine(map_.edit(), held());
   all.solution = map_.solution();
   all.counts = counts_;
   if (parameters_.keep_views > 0 && remove_outdated(map_.edit(), map_.segments(), session_begin_) > 0) {
@@ -143,7 +146,7 @@ void GlobalSlam::tie_loose_parts(Correction& all) {
     }
     bool tied = false;
     for (const SegmentFinding& finding : findings) {
-      if (finding.nodes.front().begin < first_free()) continue;  // it is to stay as it is
+      if (parameters_.frozen_map && finding.nodes.front().begin < session_begin_) continue;
       const Correction some = placed(finding);
       all.elsewhere.insert(all.elsewhere.end(), some.elsewhere.begin(), some.elsewhere.end());
       all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
@@ -206,9 +209,12 @@ Correction GlobalSlam::solved() {
 }
 
 void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {
-  if (extent == SolveSchedule::Extent::kNewest && solve_newest(meter)) return;
-  solve(MapperTuning::kIterations, 0, meter);
-  schedule_.solved_all(map_.node_count());
+  const bool is_enough = extent == SolveSchedule::Extent::kNewest && solve_newest(meter);
+  if (!is_enough) {
+    solve(MapperTuning::kIterations, 0, meter);
+    schedule_.solved_all(map_.node_count());
+  }
+  leave_former(MapperTuning::kIterations, meter);
 }
 
 // False if most of the new closures still disagree: what they say is about the nodes before, too.
@@ -229,15 +235,52 @@ void GlobalSlam::solve_anew(int max_iterations, WorkMeter* meter) {
   Graph kept = graph;
   for (SwitchableEdge& edge : graph.switchable_edges) edge.switch_value = 1.0;
   if (solve(max_iterations, 0, meter).final_cost >= cost) graph = std::move(kept);
+  leave_former(max_iterations, meter);
   schedule_.solved_all(map_.node_count());
   count_switches();
 }
 
+/// Puts the map that the session goes on with back to where it was, and the session's nodes to where they are then, if
+/// what was measured does not speak against it (former_map.hpp).
+void GlobalSlam::leave_former(int max_iterations, WorkMeter* meter) {
+  Graph& graph = map_.edit().graph;
+  former_stays_ = former_ && !former_gave_way_ && former_->keeps_shape(graph);
+  if (former_stays_) {
+    Graph solved = graph;
+    former_->restore(graph);
+    OptimizerOptions options = optimizer_options(parameters_, max_iterations);
+    options.held = former_->nodes();
+    options.meter = meter;
+    solve(options);
+    const SwitchedOff lost = switched_off(solved, graph, session_begin_);
+    former_stays_ = static_cast<double>(lost.off) <=
+                    MapperTuning::kMaxLostClosures + MapperTuning::kMaxLostShare * static_cast<double>(lost.of);
+    if (!former_stays_) graph = std::move(solved);
+  }
+  former_gave_way_ = former_ && !former_stays_;
+}
+
+/// Nodes that no refinement moves.
+std::vector<bool> GlobalSlam::held() const {
+  if (parameters_.frozen_map) return std::vector<bool>(session_begin_, true);
+  return former_stays_ ? former_->nodes() : std::vector<bool>();
+}
+
 OptimizerSummary GlobalSlam::solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter) {
-  const WorkClock clock(work_seconds_.solving);
   OptimizerOptions options = optimizer_options(parameters_, max_iterations);
-  options.first_free_node = std::max(first_free_node, first_free());
+  options.first_free_node = std::max(first_free_node, parameters_.frozen_map ? session_begin_ : 0);
   options.meter = meter;
+  if (!former_ && !parameters_.frozen_map && session_begin_ > 0 && session_begin_ < map_.node_count()) {
+    const WorkClock clock(work_seconds_.solving);
+    OptimizerOptions alone = optimizer_options(parameters_, MapperTuning::kIterations);
+    alone.meter = meter;
+    former_ = FormerMap(map(), map_.segments(), session_begin_, alone);
+  }
+  return solve(options);
+}
+
+OptimizerSummary GlobalSlam::solve(const OptimizerOptions& options) {
+  const WorkClock clock(work_seconds_.solving);
   OptimizerSummary summary = optimize(map_.edit().graph, options);
   ++counts_.solves;
   if (!summary.converged) ++counts_.solves_cut_short;

@@ -11,6 +11,7 @@
 #include "oort/loop_closure/closure_log.hpp"
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
+#include "oort/mapper/former_map.hpp"
 #include "oort/mapper/growing_map.hpp"
 #include "oort/mapper/segment_search.hpp"
 #include "oort/mapper/solve_schedule.hpp"
@@ -85,10 +86,11 @@ class GlobalSlam {
   void solve_due(SolveSchedule::Extent extent, WorkMeter* meter);
   bool solve_newest(WorkMeter* meter);
   void solve_anew(int max_iterations, WorkMeter* meter = nullptr);
+  void leave_former(int max_iterations, WorkMeter* meter);
   OptimizerSummary solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter);
+  OptimizerSummary solve(const OptimizerOptions& options);
   void count_switches();
-  /// The nodes before it keep their poses.
-  std::uint64_t first_free() const { return parameters_.frozen_map ? session_begin_ : 0; }
+  std::vector<bool> held() const;
 
   Parameters parameters_;
   GrowingMap map_;
@@ -98,6 +100,9 @@ class GlobalSlam {
   SolveSchedule schedule_;
   std::deque<std::uint64_t> not_looked_from_;  // nodes for which no candidates were looked for yet
   std::uint64_t session_begin_ = 0;            // the session's first node
+  std::optional<FormerMap> former_;            // what is before it, once something was solved
+  bool former_stays_ = false;                  // whether it is where it was at the last solution
+  bool former_gave_way_ = false;               // in this session: its nodes do not jump to and fro
   std::deque<DockRequest> dock_requests_;
   std::vector<bool> is_on_;  // each switchable edge, at the last solution
   GlobalCounts counts_;

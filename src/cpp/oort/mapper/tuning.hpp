@@ -70,6 +70,13 @@ struct MapperTuning {
   /// which is done once the map has grown by one part in so many: all drawings together cost four of the final map's
   static constexpr std::uint64_t kRedrawParts = 3;
 
+  // When a map that is gone on with stays as it was (docs/lifelong.md).
+  static constexpr double kMaxDeformed = 0.05;       ///< [m] by which the session's measurements move
+  static constexpr double kMaxDeformedShare = 0.05;  ///< of its nodes at most
+  /// Closures of the session that may be switched off for that: some, and a share of all.
+  static constexpr double kMaxLostClosures = 2.0;
+  static constexpr double kMaxLostShare = 0.1;
+
   static constexpr double kLooseSigma = 15.0;  ///< [m, rad] of an edge that shall tell nothing
 
   // Work units (geometry/work_meter.hpp).
