@@ -14,7 +14,7 @@ import json
 import multiprocessing
 import resource
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
@@ -50,6 +50,8 @@ class Day:
     ate_m: float
     places_m: float
     """how far the place that moved most lies from where it was on the first day"""
+    places_off_m: float
+    """how far the places lie from where they truly are, on average"""
     dock_m: float
     precision: float
     """share of the occupied cells that lie on a true surface of the day"""
@@ -90,10 +92,9 @@ def run_day(day: int, drive: Drive, folder: Path) -> Day:
     places = {f"{space}/{id}": compose(map_.node_poses[node], pose) for space, id, node, pose in map_.locations}
     if day == 0:
         (folder / "places.json").write_text(json.dumps({name: pose.tolist() for name, pose in places.items()}))
-    apart = {
-        name: float(np.hypot(*np.subtract(places[name], pose)[:2]))
-        for name, pose in json.loads((folder / "places.json").read_text()).items()
-    }
+        (folder / "truth.json").write_text(json.dumps(true_places(drive)))
+    apart = distances(places, json.loads((folder / "places.json").read_text()))
+    off = distances(places, json.loads((folder / "truth.json").read_text()))
     fresh = Session(parameters, recording.sensor_on_base)
     fresh.start()
     _drive(fresh, TrajectoryRecorder(recording.sensor_on_base), drive, recording.scans(), False)
@@ -108,10 +109,27 @@ def run_day(day: int, drive: Drive, folder: Path) -> Day:
         memory,
         ate_of(drive, recorder.base_poses(map_)).position_rmse,
         max(distance for name, distance in apart.items() if not name.startswith("dock")),
+        float(np.mean(list(off.values()))),
         apart["dock/dock"],
         *cells_right(map_, drive),
         *cells_right(fresh.map, drive),
     )
+
+
+def distances(places: Mapping[str, Array], others: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """How far each of the others' places is from where it is among the first ones [m]."""
+    return {name: float(np.hypot(*np.subtract(places[name], pose)[:2])) for name, pose in others.items()}
+
+
+def named_scans(drive: Drive) -> list[int]:
+    """The scans at which a place is named."""
+    return [int(k) for k in np.linspace(0, len(drive.scan_stamps) - 1, PLACES + 2)[1:-1]]
+
+
+def true_places(drive: Drive) -> dict[str, list[float]]:
+    """Where the sensor truly was at them, on the map."""
+    T_map_sensor = compose(drive.T_map_base, drive.T_base_sensor)
+    return {f"place/{k}": T_map_sensor[k].tolist() for k in named_scans(drive)}
 
 
 def _drive(
@@ -119,7 +137,7 @@ def _drive(
 ) -> float:
     """All scans of a drive with its calls; CPU seconds of the longest scan."""
     marked, docked = (event.t for event in drive.events)
-    named = np.linspace(0, len(drive.scan_stamps) - 1, PLACES + 2).astype(int)[1:-1].tolist()
+    named = named_scans(drive)
     longest, was_docked = 0.0, False
     before = -np.inf
     for number, scan in enumerate(scans):

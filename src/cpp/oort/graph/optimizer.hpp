@@ -32,13 +32,13 @@ struct OptimizerOptions {
   bool decide = true;
   /// Nodes with lower ids keep their poses: solving is then about the newest nodes only, and costs as much as they do.
   std::uint64_t first_free_node = 0;
-  /// The same of any nodes: a flag for each, none for the last ones.
-  std::vector<bool> held;
   RobustKernel robust_kernel = RobustKernel::kSwitchable;
   /// Standard deviations from which on an edge's cost is no longer squared; for kHuber.
   double huber_scale = 10.0;
   /// Who counts the work while it is done; may be null. With kHuber it is charged beforehand as a whole.
   WorkMeter* meter = nullptr;
+  /// Nodes that keep their poses besides those before first_free_node: a flag for each, none for the last ones.
+  std::vector<bool> held = {};
 
   bool holds(std::uint64_t node) const { return node < first_free_node || (node < held.size() && held[node]); }
 };
