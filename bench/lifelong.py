@@ -58,7 +58,7 @@ class Day:
     recall: float
     """share of the true surfaces' points that an occupied cell lies on"""
     fresh_precision: float
-    """the same of a map of this drive alone"""
+    """the same of a map of this drive alone; NaN on days on which none was made"""
     fresh_recall: float
 
 
@@ -71,8 +71,8 @@ def simulate_day(home: int, day: int, moves: int, every: int, minutes: float) ->
     return simulate_drive(home, config)
 
 
-def run_day(day: int, drive: Drive, folder: Path) -> Day:
-    """Resumes yesterday's map, drives and saves."""
+def run_day(day: int, drive: Drive, folder: Path, compare: bool) -> Day:
+    """Resumes yesterday's map, drives and saves; ``compare``: with a map of this drive alone, too."""
     parameters = read_parameters()
     recording = recording_of(drive, f"day {day}")
     target = folder / f"map{day % 2}"
@@ -86,6 +86,7 @@ def run_day(day: int, drive: Drive, folder: Path) -> Day:
     recorder = TrajectoryRecorder(recording.sensor_on_base)
     longest = _drive(session, recorder, drive, recording.scans(), day == 0)
     session.stop()
+    recorder.follow(session.mapper.take_renumbering())
     cpu = time.process_time() - cpu
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     map_ = session.map
@@ -95,10 +96,13 @@ def run_day(day: int, drive: Drive, folder: Path) -> Day:
         (folder / "truth.json").write_text(json.dumps(true_places(drive)))
     apart = distances(places, json.loads((folder / "places.json").read_text()))
     off = distances(places, json.loads((folder / "truth.json").read_text()))
-    fresh = Session(parameters, recording.sensor_on_base)
-    fresh.start()
-    _drive(fresh, TrajectoryRecorder(recording.sensor_on_base), drive, recording.scans(), False)
-    fresh.stop()
+    fresh_right = (np.nan, np.nan)
+    if compare:
+        fresh = Session(parameters, recording.sensor_on_base)
+        fresh.start()
+        _drive(fresh, TrajectoryRecorder(recording.sensor_on_base), drive, recording.scans(), False)
+        fresh.stop()
+        fresh_right = cells_right(fresh.map, drive)
     return Day(
         day + 1,
         len(map_),
@@ -112,7 +116,7 @@ def run_day(day: int, drive: Drive, folder: Path) -> Day:
         float(np.mean(list(off.values()))),
         apart["dock/dock"],
         *cells_right(map_, drive),
-        *cells_right(fresh.map, drive),
+        *fresh_right,
     )
 
 
@@ -149,6 +153,7 @@ def _drive(
         started = time.thread_time()
         result = session.add_scan(scan)
         longest = max(longest, time.thread_time() - started)
+        recorder.follow(session.mapper.take_renumbering())
         recorder.add(scan.stamp, scan.odometry, result)
         if name_places and number in named:
             session.create_location("place", str(number))
@@ -186,11 +191,14 @@ def _share_near(points: Array, others: Array) -> float:
 
 def _child(arguments: argparse.Namespace, day: int, queue: "multiprocessing.Queue[Day]") -> None:
     drive = simulate_day(arguments.home, day, arguments.moves, arguments.every, arguments.minutes)
-    queue.put(run_day(day, drive, arguments.out))
+    queue.put(run_day(day, drive, arguments.out, day % arguments.compare == 0))
 
 
 def _panel(name: str, days: Sequence[float], values: Sequence[float]) -> Panel:
     """Lengths in millimetres: a bar of a chart reaches at least to 1."""
+    days, values = zip(
+        *((day, value) for day, value in zip(days, values, strict=True) if not np.isnan(value)), strict=True
+    )
     if name.endswith("_m"):
         return Panel(f"{name}m", days, [1e3 * value for value in values])
     return Panel(name, days, values)
@@ -209,6 +217,7 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=4.0, help="of each drive, at least")
     parser.add_argument("--moves", type=int, default=4, metavar="DAY", help="the first day with moves; 0: none")
     parser.add_argument("--every", type=int, default=10, metavar="DAYS", help="between moves")
+    parser.add_argument("--compare", type=int, default=1, metavar="DAYS", help="between maps of a drive alone")
     parser.add_argument("--out", type=Path, default=Path("oort-out/lifelong"), metavar="DIR")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)

@@ -69,8 +69,11 @@ class Part:
 
     def map_scans(self, scans: Sequence[Scan]) -> None:
         for scan in scans:
-            self.recorder.add(scan.stamp, scan.odometry, self.session.add_scan(scan))
+            result = self.session.add_scan(scan)
+            self.recorder.follow(self.session.mapper.take_renumbering())
+            self.recorder.add(scan.stamp, scan.odometry, result)
         self.session.stop()
+        self.recorder.follow(self.session.mapper.take_renumbering())
 
 
 def _resumed(recording: Recording, parameters: Parameters, halves: Sequence[Sequence[Scan]]) -> tuple[Trajectory, str]:
@@ -78,6 +81,7 @@ def _resumed(recording: Recording, parameters: Parameters, halves: Sequence[Sequ
     part.map_scans(halves[0])
     x, y, theta = compose(part.session.map.node_poses[-1], RESUMED_AT).tolist()
     part.session.resume("", (x, y, theta))
+    part.recorder.follow(part.session.mapper.take_renumbering())
     part.map_scans(halves[1])
     return _trajectory([part.recorder], [part.recorder.base_poses(part.session.map)]), ""
 

@@ -54,7 +54,12 @@ def replay(
     watch = Stopwatch()
     session = Session(parameters, recording.sensor_on_base)
     recorder = TrajectoryRecorder(recording.sensor_on_base)
-    schedule = TimedSchedule(events, lambda _, event: session.call(event.call, event.args))
+
+    def call(_: int, event: Event) -> None:
+        session.call(event.call, event.args)
+        recorder.follow(session.mapper.take_renumbering())
+
+    schedule = TimedSchedule(events, call)
     then: list[tuple[float, float, float]] = []
     closes: list[bool] = []
     solving: list[float] = []
@@ -72,6 +77,7 @@ def replay(
         started = time.thread_time()
         result = session.add_scan(scan)
         watch.scan_seconds.append(time.thread_time() - started)
+        recorder.follow(session.mapper.take_renumbering())
         recorder.add(scan.stamp, scan.odometry, result)
         closes.append(result is not None and result.corrected)
         states.append("" if result is None else result.tracking)
@@ -84,6 +90,7 @@ def replay(
         times.append(scan.time)
     schedule.finish(math.inf)
     session.stop()
+    recorder.follow(session.mapper.take_renumbering())
     T_sensor_base = between(recording.sensor_on_base, np.zeros(3))
     return Replayed(
         Drive(recording, parameters, session, recorder, watch, max(times) - min(times)),

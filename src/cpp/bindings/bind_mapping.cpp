@@ -11,6 +11,7 @@
 
 #include "bindings.hpp"
 #include "guarded.hpp"
+#include "oort/maintenance/lifelong_tuning.hpp"
 #include "oort/maintenance/prune.hpp"
 #include "oort/mapper/mapper.hpp"
 #include "scans.hpp"
@@ -150,13 +151,31 @@ py::list locations_of(const Mapper& mapper) {
   return list;
 }
 
+std::optional<std::pair<py::array_t<std::int64_t>, py::array_t<double>>> renumbering_of(Mapper& mapper) {
+  const std::optional<Renumbering> nodes = mapper.take_renumbering();
+  if (!nodes) return std::nullopt;
+  const std::size_t size = nodes->carrier.size();
+  py::array_t<std::int64_t> carrier(static_cast<py::ssize_t>(size));
+  py::array_t<double> poses({static_cast<py::ssize_t>(size), py::ssize_t{3}});
+  auto carriers = carrier.mutable_unchecked<1>();
+  auto rows = poses.mutable_unchecked<2>();
+  for (std::size_t k = 0; k < size; ++k) {
+    const auto row = static_cast<py::ssize_t>(k);
+    carriers(row) = static_cast<std::int64_t>(nodes->carrier[k]);
+    rows(row, 0) = nodes->T_carrier_node[k].x;
+    rows(row, 1) = nodes->T_carrier_node[k].y;
+    rows(row, 2) = nodes->T_carrier_node[k].theta;
+  }
+  return std::make_pair(std::move(carrier), std::move(poses));
+}
+
 void bind_pruning(py::module_& m) {
   m.def(
       "prune_map",
       [](const Map& map, unsigned views, bool always) {
         const py::gil_scoped_release release;
         if (always) return prune_grown(map, views).map;
-        std::optional<Pruned> pruned = prune(map, {views, false});
+        std::optional<Pruned> pruned = prune(map, {views, LifelongTuning::kMinPrunedShare});
         return pruned ? std::move(pruned->map) : map;
       },
       py::arg("map"), py::arg("views"), py::arg("always") = true,
@@ -216,11 +235,18 @@ void bind_calls(py::class_<Guarded<Mapper>>& c) {
       .def(
           "begin_session",
           [](Guarded<Mapper>& guard, const PoseTuple& pose) {
-            return guard.aside([&](Mapper& mapper) { return mapper.begin_session(pose_of(pose)); });
+            guard.aside([&](Mapper& mapper) { mapper.begin_session(pose_of(pose)); });
           },
           py::arg("sensor_on_map"),
           "The next scan begins a new trajectory segment at about this pose of the map, which is pruned first if it "
-          "shows most places more often than keep_views asks for. The node that each node became or is carried by.")
+          "shows most places more often than keep_views asks for: see take_renumbering.")
+      .def(
+          "take_renumbering", [](Guarded<Mapper>& guard) { return guard.with(&renumbering_of); },
+          "What became of the nodes, if the last scan, session or finish gave them other ids, as the map was reduced "
+          "to "
+          "the views that it needs: for each node that there was the node that it became or by which its place is "
+          "known "
+          "now (n,), and where it is seen from there (x, y, theta; n, 3). Else None. Tells it once.")
       .def("resume_from_paused", guarded(&Mapper::resume_from_paused),
            "The next scan makes a node whose link to the last one is very uncertain.")
       .def("finish", guarded(&Mapper::finish), "Brings the map to its final solution.")

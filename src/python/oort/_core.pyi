@@ -402,9 +402,9 @@ class Mapper:
         sweep: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None,
     ) -> None:
         """Takes a scan of another laser, which joins the next one of the main laser. Raises InputError."""
-    def begin_session(self, sensor_on_map: tuple[float, float, float]) -> list[int]:
+    def begin_session(self, sensor_on_map: tuple[float, float, float]) -> None:
         """The next scan begins a new trajectory segment at about this pose of the map, which is pruned first if it
-        shows most places more often than keep_views asks for. The node that each node became or is carried by.
+        shows most places more often than keep_views asks for: see take_renumbering.
         """
     def create_location(self, name_space: str, id: str, pose: tuple[float, float, float]) -> None:
         """Names a pose of the map."""
@@ -429,6 +429,11 @@ class Mapper:
         """The next scan makes a node whose link to the last one is very uncertain."""
     def set_map(self, map: Map) -> None:
         """Replaces everything by a map from elsewhere."""
+    def take_renumbering(self) -> tuple[NDArray[np.int64], NDArray[np.float64]] | None:
+        """What became of the nodes, if the last scan, session or finish gave them other ids, as the map was reduced to
+        the views that it needs: for each node that there was the node that it became or by which its place is known
+        now (n,), and where it is seen from there (x, y, theta; n, 3). Else None. Tells it once.
+        """
     @property
     def closure_attempts(self) -> list[tuple[int, int, str | None, tuple[float, float, float], float]]:
         """(query node, candidate node, why it was rejected or None, T_candidate_query, inlier ratio) of each kept."""

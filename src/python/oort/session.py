@@ -198,11 +198,11 @@ class Session:
         self._state = State.NOT_MAPPING
         self._path = path
 
-    def resume(self, path: str, pose: Pose) -> list[int]:
+    def resume(self, path: str, pose: Pose) -> None:
         """Goes on with the loaded map in a new segment; ``pose`` is about where the sensor is in the map frame.
 
-        A map that shows most of its places more often than keep_views asks for is pruned first. Returns the node that
-        each node of the map became, or by which its place is known now.
+        A map that shows most of its places more often than keep_views asks for is pruned first: Mapper.take_renumbering
+        tells what became of its nodes.
         """
         resume = self._naming("map/resume")
         if self._state is not State.NOT_MAPPING:
@@ -221,10 +221,9 @@ class Session:
         if path:
             self._prepare("map/resume", path)
         self._before = self.map
-        carriers = self._mapper.begin_session((x, y, theta))
+        self._mapper.begin_session((x, y, theta))
         self._path = path
         self._state = State.MAPPING
-        return carriers
 
     def notify_docked(self) -> None:
         """Says that the robot stands at the dock it saw earlier.

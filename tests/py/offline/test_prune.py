@@ -49,8 +49,8 @@ def grown(home: Drive, scans: list[Scan], keep_views: int) -> tuple[Session, Tra
     mapped(session, scans, recorder)
     session.create_location("place", "dock", (0.0, 0.0, 0.0))
     for _ in range(2):
-        before = session.map.node_poses
-        recorder.renumber(session.resume("", (0.0, 0.0, 0.0)), before, session.map.node_poses)
+        session.resume("", (0.0, 0.0, 0.0))
+        recorder.follow(session.mapper.take_renumbering())
         mapped(session, scans)
     return session, recorder
 

@@ -147,3 +147,15 @@ def test_the_beginning_of_a_segment_does_not_move_the_scans_before_it() -> None:
     solved.incremental_results["target"] = np.array([0, 1])
     base = record(results, straight(4)).base_poses(solved)
     assert base[1] == pytest.approx((0.1, 0.0, 0.0))
+
+
+def test_scans_go_over_to_the_nodes_that_are_left() -> None:
+    results = [Result("node", node) for node in range(3)] + [Result("located", 1, (0.2, 0.0, 0.0)), None]
+    recorder = record(results, straight(5))
+    recorder.follow(None)
+    recorder.follow((np.array([0, 0, 1]), np.array([ZERO, (0.5, 0.1, 0.0), ZERO])))
+    assert recorder.carriers().tolist() == [0, 0, 1, 0, 0]
+    left = chain([ZERO, (1.0, 0.0, 0.0)], [ZERO, (1.0, 0.0, 0.0)])
+    poses = recorder.base_poses(left)
+    assert poses[:4, 0] == pytest.approx([0.0, 0.5, 1.0, 0.7])
+    assert poses[:4, 1] == pytest.approx([0.0, 0.1, 0.0, 0.1])

@@ -48,6 +48,8 @@ class LocalSlam {
   void begin_map();
   void begin_session(const SessionStart& start, std::uint64_t node_count);
   void interrupt();
+  /// The map's older nodes were reduced.
+  void renumber(const Renumbering& nodes) { trajectory_.renumber(nodes); }
 
   /// Throws InputError if the scan's limits, the pose or the motion are not finite; nothing changes then.
   Result add_scan(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base);

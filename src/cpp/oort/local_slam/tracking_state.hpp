@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "oort/graph/graph.hpp"
+#include "oort/map/renumbering.hpp"
 
 namespace oort {
 
@@ -28,6 +29,9 @@ class TrackingMonitor {
   /// Looks whether a closure that is on ties the newest segment, which begins with the node `segment_begin`, to the
   /// map.
   void look_for_tie(const Graph& graph, std::uint64_t segment_begin);
+
+  /// The map's older nodes were reduced.
+  void renumber(const Renumbering& nodes) { untied_begin_ = nodes.of(untied_begin_); }
 
   /// Takes the next scan. `missed`: the scan matcher was asked and could not place it.
   TrackingState update(bool missed);

@@ -49,6 +49,12 @@ void TrajectoryBuilder::interrupt() {
   if (begin_ == Begin::kNot) begin_ = Begin::kAfterPause;
 }
 
+void TrajectoryBuilder::renumber(const Renumbering& nodes) {
+  newest_.id = nodes.of(newest_.id);
+  anchor_.id = nodes.of(anchor_.id);
+  next_id_ = nodes.of(next_id_);
+}
+
 void TrajectoryBuilder::track(LocalScan& scan, const MotionHypotheses& hypotheses, const Pose2& T_base_sensor) {
   Pose2 T_previous_sensor = between(T_odom_sensor_tracked_, scan.T_odom_sensor);
   const bool is_first = !is_going_on();

@@ -10,6 +10,7 @@
 #include "oort/geometry/pose2.hpp"
 #include "oort/local_slam/incremental_graph_builder.hpp"
 #include "oort/map/node_addition.hpp"
+#include "oort/map/renumbering.hpp"
 #include "oort/matching/rejection.hpp"
 #include "oort/odometry/odometry_monitor.hpp"
 #include "oort/parameters/parameters.hpp"
@@ -78,6 +79,9 @@ class TrajectoryBuilder {
   void begin_session(const SessionStart& start, std::uint64_t node_count);
   /// The next scan begins a segment whose edge to the newest node is very uncertain.
   void interrupt();
+
+  /// The map's older nodes were reduced.
+  void renumber(const Renumbering& nodes);
 
   bool begins_map() const { return begin_ == Begin::kMap; }
   /// Whether there is a newest node that scans are relative to.

@@ -25,6 +25,18 @@ void ClosureLog::accept(std::uint64_t query, std::uint64_t candidate) {
   if (found != attempts_.rend()) found->rejection = Rejection::kNone;
 }
 
+void ClosureLog::renumber(const Renumbering& nodes) {
+  const auto T_carrier = [&](std::uint64_t node) {
+    return node < nodes.carrier.size() ? nodes.T_carrier_node[node] : Pose2{};
+  };
+  for (ClosureAttempt& attempt : attempts_) {
+    attempt.T_candidate_query =
+        T_carrier(attempt.candidate) * attempt.T_candidate_query * inverse(T_carrier(attempt.query));
+    attempt.query = nodes.of(attempt.query);
+    attempt.candidate = nodes.of(attempt.candidate);
+  }
+}
+
 void ClosureLog::trim() {
   while (attempts_.size() > capacity_) {
     attempts_.pop_front();

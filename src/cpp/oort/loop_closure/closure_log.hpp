@@ -6,6 +6,7 @@
 #include <deque>
 
 #include "oort/geometry/pose2.hpp"
+#include "oort/map/renumbering.hpp"
 #include "oort/matching/rejection.hpp"
 
 namespace oort {
@@ -29,6 +30,9 @@ class ClosureLog {
 
   /// An attempt that was rejected when it was added is accepted after all.
   void accept(std::uint64_t query, std::uint64_t candidate);
+
+  /// The map was reduced: attempts of nodes that went are their carriers' now.
+  void renumber(const Renumbering& nodes);
 
   const std::deque<ClosureAttempt>& attempts() const { return attempts_; }
   std::uint64_t forgotten() const { return forgotten_; }  ///< for want of room

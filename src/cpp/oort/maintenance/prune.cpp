@@ -3,7 +3,6 @@
 #include "oort/maintenance/prune.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "oort/maintenance/lifelong_tuning.hpp"
@@ -16,9 +15,9 @@ namespace oort {
 namespace {
 
 bool is_worth_it(std::size_t pruned, std::size_t size, const PruneOptions& options) {
-  if (options.at_once) return pruned > 0;
+  if (options.min_share == 0.0) return pruned > 0;
   return pruned >= LifelongTuning::kMinPruned &&
-         static_cast<double>(pruned) >= LifelongTuning::kMinPrunedShare * static_cast<double>(size);
+         static_cast<double>(pruned) >= options.min_share * static_cast<double>(size);
 }
 
 /// A node's result on what the trajectory says of it now.
@@ -33,16 +32,21 @@ IncrementalResult renumbered(IncrementalResult result, const ReducedGraph& reduc
 }  // namespace
 
 std::optional<Pruned> prune(const Map& map, const PruneOptions& options) {
-  const TrajectorySegments segments = TrajectorySegments::of_map(map);
-  const std::vector<bool> kept = select_views(map, segments, options.views);
+  return prune(map, TrajectorySegments::of_map(map), options);
+}
+
+std::optional<Pruned> prune(const Map& map, const TrajectorySegments& segments, const PruneOptions& options) {
+  const std::vector<bool> kept = select_views(map, segments, options.views, options.newest);
   const auto pruned = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), false));
   if (!is_worth_it(pruned, kept.size(), options)) return std::nullopt;
   const ReducedGraph reduced = reduce(map, segments, kept);
   Pruned result;
   result.map.graph = reduced.graph;
   result.map.loop_results = reduced.loop_results;
+  result.nodes = {kept, reduced.carrier, {}, reduced.graph.nodes.size()};
   for (std::uint64_t node = 0; node < kept.size(); ++node) {
-    result.carrier.push_back(reduced.carrier[node]);
+    const Pose2& T_map_carrier = reduced.graph.nodes[reduced.carrier[node]].pose;
+    result.nodes.T_carrier_node.push_back(kept[node] ? Pose2{} : between(T_map_carrier, map.graph.nodes[node].pose));
     if (!kept[node]) continue;
     PointCloud cloud = map.clouds[node];
     cloud.id = reduced.new_id[node];
@@ -51,10 +55,7 @@ std::optional<Pruned> prune(const Map& map, const PruneOptions& options) {
   for (const IncrementalResult& old : map.incremental_results) {
     if (kept[old.id]) result.map.incremental_results.push_back(renumbered(old, reduced));
   }
-  for (Location location : map.locations) {  // their nodes are kept
-    location.node_id = reduced.new_id[location.node_id];
-    result.map.locations.push_back(std::move(location));
-  }
+  for (const Location& location : map.locations) result.map.locations.push_back(renumbered(location, result.nodes));
   return result;
 }
 
@@ -66,10 +67,9 @@ Pruned prune_grown(Map map, unsigned views) {
       remove_outdated(map, segments, node);
     }
   }
-  std::optional<Pruned> pruned = prune(map, {views, true});
+  std::optional<Pruned> pruned = prune(map, {views});
   if (pruned) return std::move(*pruned);
-  std::vector<std::uint64_t> same(segments.size());
-  std::iota(same.begin(), same.end(), std::uint64_t{0});
+  Renumbering same = Renumbering::none(segments.size());
   return {std::move(map), std::move(same)};
 }
 

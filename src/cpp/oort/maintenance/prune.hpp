@@ -3,22 +3,23 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "oort/map/map.hpp"
+#include "oort/map/renumbering.hpp"
+#include "oort/map/trajectory_segments.hpp"
 
 namespace oort {
 
 /// A map without the nodes that show nothing more than others.
 struct Pruned {
   Map map;
-  /// For each node of the map before: the node of the new map that it became, or by which its place is known now.
-  std::vector<std::uint64_t> carrier;
+  Renumbering nodes;
 };
 
 struct PruneOptions {
-  unsigned views = 3;   ///< of a piece of surface from one side that are kept
-  bool at_once = true;  ///< false: nothing is done for a few nodes
+  unsigned views = 3;        ///< of a piece of surface from one side that are kept
+  double min_share = 0.0;    ///< of the nodes: nothing is done for less, nor for a few
+  std::uint64_t newest = 0;  ///< nodes that stay whatever they show: where they lie may not be known well yet
 };
 
 /// Reduces a map to the views that it needs (select_views()). What the edges of the nodes that go knew is folded into
@@ -29,6 +30,8 @@ struct PruneOptions {
 /// The map must be one that find_defect() accepts. Nothing if there is nothing to prune. The same map gives the same
 /// bits.
 std::optional<Pruned> prune(const Map& map, const PruneOptions& options);
+/// The same where the segments are known.
+std::optional<Pruned> prune(const Map& map, const TrajectorySegments& segments, const PruneOptions& options);
 
 /// The same of a map that grew over many sessions, all at once; first, what newer segments contradict is taken out of
 /// older ones (remove_outdated()).

@@ -12,8 +12,8 @@ namespace oort {
 /// what the scans show, within what the edges of the graph leave open; edges and switches stay as they are. The first
 /// node of each connected part stays where it is. Work is bounded by counts; the same map gives the same bits.
 ///
-/// Nodes with a flag in `held` stay, too; it may be shorter than the map. The map must be one that find_defect() accepts. Returns what was done; a
-/// map that the scans would make disagree more is left as it was.
+/// Nodes with a flag in `held`, which may be shorter than the map, stay, too. The map must be one that find_defect()
+/// accepts. Returns what was done; a map that the scans would make disagree more is left as it was.
 RefinementCounts refine(Map& map, const std::vector<bool>& held = {});
 
 }  // namespace oort

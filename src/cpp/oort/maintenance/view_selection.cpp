@@ -56,7 +56,8 @@ std::vector<bool> must_stay(const Map& map) {
 
 }  // namespace
 
-std::vector<bool> select_views(const Map& map, const TrajectorySegments& segments, unsigned views) {
+std::vector<bool> select_views(const Map& map, const TrajectorySegments& segments, unsigned views,
+                               std::uint64_t newest) {
   const std::size_t size = map.graph.nodes.size();
   std::vector<bool> kept = must_stay(map);
   const std::vector<std::uint64_t> parts = tied_parts(map.graph, segments);
@@ -82,6 +83,7 @@ std::vector<bool> select_views(const Map& map, const TrajectorySegments& segment
   for (std::uint64_t node = 0; node < size; ++node) ranks[node] = rank(node);
   std::stable_sort(order.begin(), order.end(), [&](std::uint64_t a, std::uint64_t b) { return ranks[a] < ranks[b]; });
   for (const std::uint64_t node : order) look(node);
+  for (std::uint64_t node = size - std::min<std::uint64_t>(newest, size); node < size; ++node) kept[node] = true;
   return kept;
 }
 

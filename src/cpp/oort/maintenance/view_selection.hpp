@@ -16,6 +16,8 @@ namespace oort {
 /// number that is kept is thus bounded by the area that was seen. Nodes that places are named from, that docks were
 /// linked to, and the first of each part that no edge links to the rest are always kept. Parts of the map that no
 /// closure ties say nothing of one another.
-std::vector<bool> select_views(const Map& map, const TrajectorySegments& segments, unsigned views);
+/// The `newest` nodes are kept, too, but take no older one's place.
+std::vector<bool> select_views(const Map& map, const TrajectorySegments& segments, unsigned views,
+                               std::uint64_t newest = 0);
 
 }  // namespace oort

@@ -34,11 +34,14 @@ void GlobalLane::Meter::charge(std::uint64_t units) {
   lane_.changed_.notify_all();
 }
 
-void GlobalLane::advance(std::vector<NodeAddition> nodes, std::uint64_t units) {
+void GlobalLane::advance(std::vector<NodeAddition> nodes, std::optional<std::vector<Location>> locations,
+                         std::uint64_t units) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     settled_ = false;
-    if (!nodes.empty()) handovers_.push_back({granted_, std::move(nodes), std::nullopt});
+    if (!nodes.empty() || locations) {
+      handovers_.push_back({granted_, std::move(nodes), std::move(locations), false, reductions_taken_});
+    }
     granted_before_ = granted_;
     granted_ += units;
   }
@@ -49,7 +52,7 @@ void GlobalLane::advance(std::vector<NodeAddition> nodes, std::uint64_t units) {
 
 void GlobalLane::request_dock(std::vector<NodeAddition> nodes, const std::vector<Location>& locations) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  handovers_.push_back({granted_, std::move(nodes), locations});
+  handovers_.push_back({granted_, std::move(nodes), locations, true, reductions_taken_});
 }
 
 std::vector<Correction> GlobalLane::take_due() {
@@ -116,6 +119,10 @@ void GlobalLane::work_one_piece(std::unique_lock<std::mutex>& lock) {
     error = std::current_exception();
   }
   lock.lock();
+  if (correction && correction->reduced) {
+    ++reductions_made_;
+    reduced_ = correction->reduced->nodes;
+  }
   if (correction) results_.push_back({done_, std::move(*correction)});
   work_seconds_ = slam_.work_seconds();
   error_ = error;
@@ -124,8 +131,18 @@ void GlobalLane::work_one_piece(std::unique_lock<std::mutex>& lock) {
 
 /// Of whoever may call slam_.
 void GlobalLane::hand_over(const Handover& handover) {
-  for (const NodeAddition& node : handover.nodes) slam_.add(node);
-  if (handover.docks) slam_.request_dock(*handover.docks);
+  // One reduction at a time is under way: what comes is numbered by the last one or by the one before.
+  const bool is_of_before = handover.reductions < reductions_made_;
+  if (!is_of_before) slam_.reduction_was_taken();
+  for (const NodeAddition& node : handover.nodes) slam_.add(is_of_before ? renumbered(node, reduced_) : node);
+  if (handover.locations) {
+    std::vector<Location> locations = *handover.locations;
+    if (is_of_before) {
+      for (Location& location : locations) location = renumbered(location, reduced_);
+    }
+    slam_.set_locations(std::move(locations));
+  }
+  if (handover.requests_dock) slam_.request_dock();
 }
 
 /// Until no result with less counted work can come any more.
@@ -139,6 +156,7 @@ void GlobalLane::wait_until(std::unique_lock<std::mutex>& lock, std::uint64_t wo
 std::vector<Correction> GlobalLane::take_before(std::uint64_t work) {
   std::vector<Correction> corrections;
   while (!results_.empty() && results_.front().at < work) {
+    if (results_.front().correction.reduced) ++reductions_taken_;
     corrections.push_back(std::move(results_.front().correction));
     results_.pop_front();
   }

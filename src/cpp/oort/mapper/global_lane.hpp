@@ -36,8 +36,8 @@ class GlobalLane {
   GlobalLane(const GlobalLane&) = delete;
   GlobalLane& operator=(const GlobalLane&) = delete;
 
-  /// After a scan: hands over the nodes that it made, and grants work.
-  void advance(std::vector<NodeAddition> nodes, std::uint64_t units);
+  /// After a scan: hands over the nodes that it made and, if they changed, the named places, and grants work.
+  void advance(std::vector<NodeAddition> nodes, std::optional<std::vector<Location>> locations, std::uint64_t units);
 
   /// Between scans: hands over the node that a call made, if it made one, and asks for the newest node to be linked to
   /// the dock. The work begins with the next scan's grant.
@@ -68,7 +68,9 @@ class GlobalLane {
   struct Handover {
     std::uint64_t at;  // work counted when the nodes came
     std::vector<NodeAddition> nodes;
-    std::optional<std::vector<Location>> docks;  // a request for the dock, after the nodes
+    std::optional<std::vector<Location>> locations;
+    bool requests_dock;        // after the nodes
+    std::uint64_t reductions;  // that the local lane knew of: it numbers nodes by the last one
   };
   struct Result {
     std::uint64_t at;
@@ -99,6 +101,8 @@ class GlobalLane {
   std::deque<Result> results_;
   std::exception_ptr error_;
   WorkSeconds work_seconds_;  // up to the last piece
+  std::uint64_t reductions_made_ = 0, reductions_taken_ = 0;
+  Renumbering reduced_;  // by the last one that was made
   bool busy_ = false;
   bool settled_ = false;  // whoever settled may call slam_
   std::atomic<bool> ending_{false};

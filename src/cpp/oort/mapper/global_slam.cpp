@@ -24,17 +24,16 @@ bool is_unknown(const NodeAddition& node) {
 }  // namespace
 
 GlobalSlam::GlobalSlam(const Parameters& parameters)
-    : parameters_(parameters), loops_(parameters), docks_(parameters), segment_search_(parameters) {}
+    : parameters_(parameters), loops_(parameters), docks_(parameters), segment_search_(parameters) {
+  begin_session();
+}
 
 void GlobalSlam::set_map(const Map& map) {
   map_.set_map(map);
   make_dock_closures_firm(map_.edit(), parameters_.dock_graph_builder.closure_firmness);
   begin_session();
   dock_requests_.clear();
-  schedule_ = SolveSchedule();
-  schedule_.solved_all(map_.node_count());
-  is_on_.clear();
-  count_switches();
+  begin_schedule();
 }
 
 void GlobalSlam::begin_session() {
@@ -44,6 +43,14 @@ void GlobalSlam::begin_session() {
   former_.reset();
   former_stays_ = former_gave_way_ = false;
   segment_search_ = SegmentSearch(parameters_);
+  reduction_ = {std::max(MapperTuning::kFirstReduction, MapperTuning::kReductionGrowth * map_.node_count()), false};
+}
+
+void GlobalSlam::begin_schedule() {
+  schedule_ = SolveSchedule();
+  schedule_.solved_all(map_.node_count());
+  is_on_.clear();
+  count_switches();
 }
 
 void GlobalSlam::add(const NodeAddition& node) {
@@ -52,14 +59,10 @@ void GlobalSlam::add(const NodeAddition& node) {
   map_.add(node);
 }
 
-void GlobalSlam::request_dock(const std::vector<Location>& locations) {
-  dock_requests_.push_back({map_.node_count() - 1, locations});
-}
-
 bool GlobalSlam::has_work() const {
   return !dock_requests_.empty() || !not_looked_from_.empty() || loops_.has_work() ||
          segment_search_.is_due(map_.node_count()) ||
-         schedule_.due(map_.node_count(), map_.node_count()) != SolveSchedule::Extent::kNothing;
+         schedule_.due(map_.node_count(), map_.node_count()) != SolveSchedule::Extent::kNothing || is_reduction_due();
 }
 
 Correction GlobalSlam::work(WorkMeter& meter) {
@@ -69,6 +72,7 @@ Correction GlobalSlam::work(WorkMeter& meter) {
     solve_due(extent, &meter);
     return solved();
   }
+  if (is_reduction_due()) return reduce(meter);
   if (segment_search_.is_due(map_.node_count())) {
     const WorkClock clock(work_seconds_.matching);
     return placed(segment_search_.look(map(), map_.segments(), &meter));
@@ -99,15 +103,65 @@ Correction GlobalSlam::finish() {
   return all;
 }
 
+/// While there is nothing else to do; later, for want of such a time.
+bool GlobalSlam::is_reduction_due() const {
+  if (parameters_.keep_views == 0 || reduction_.is_under_way) return false;
+  const bool is_busy = segment_search_.is_looking() || !not_looked_from_.empty() || loops_.has_work();
+  return map_.node_count() >= (is_busy ? reduction_.due + reduction_.due / 2 : reduction_.due);
+}
+
+/// A session that goes on and on is ended and gone on with beside the scans (docs/lifelong.md): the map is solved,
+/// scans are made to agree, what is out of date goes, and so do views that show what others do.
+Correction GlobalSlam::reduce(WorkMeter& meter) {
+  const std::uint64_t size = map_.node_count();
+  const double share = session_begin_ == 0 ? MapperTuning::kMinFirstReducedShare : MapperTuning::kMinReducedShare;
+  PruneOptions options{static_cast<unsigned>(parameters_.keep_views), share, MapperTuning::kUnsettledNodes};
+  charge(&meter, MapperTuning::kWorkPerView * static_cast<double>(size));
+  if (!prune(map(), map_.segments(), options)) {
+    reduction_.due = size + size / 2;
+    return nothing();
+  }
+  charge(&meter, MapperTuning::kWorkPerReduced * static_cast<double>(size));
+  former_gave_way_ = false;
+  solve_anew(MapperTuning::kIterations, &meter);
+  if (parameters_.final_refinement) counts_.refinement = refine(map_.edit(), held());
+  remove_outdated(map_.edit(), map_.segments(), session_begin_);
+  options.min_share = 0.0;
+  std::optional<Pruned> pruned = prune(map(), map_.segments(), options);
+  if (!pruned) {  // closures that it cost moved what looked alike
+    reduction_.due = size + size / 2;
+    Correction correction = solved();
+    correction.clouds = map().clouds;
+    return correction;
+  }
+  go_on_with(*pruned, size);
+  Correction correction = nothing();
+  correction.reduced = std::make_shared<const Pruned>(std::move(*pruned));
+  return correction;
+}
+
+void GlobalSlam::go_on_with(const Pruned& pruned, std::uint64_t size) {
+  map_.reduce(pruned.map, pruned.nodes);
+  closure_log_.renumber(pruned.nodes);
+  const std::uint64_t settled = parameters_.frozen_map ? session_begin_ : size - MapperTuning::kUnsettledNodes;
+  std::deque<std::uint64_t> not_looked_from;
+  for (const std::uint64_t node : not_looked_from_) {
+    if (pruned.nodes.kept[node]) not_looked_from.push_back(pruned.nodes.of(node));
+  }
+  begin_session();
+  not_looked_from_ = std::move(not_looked_from);
+  begin_schedule();
+  session_begin_ = pruned.nodes.left_before(settled);
+  reduction_.is_under_way = true;
+}
+
 Correction GlobalSlam::link_docks(WorkMeter* meter) {
   Correction all;
   for (; !dock_requests_.empty(); dock_requests_.pop_front()) {
-    const DockRequest& request = dock_requests_.front();
-    map_.edit().locations = request.locations;
     std::optional<Closure> closure;
     {
       const WorkClock clock(work_seconds_.matching);
-      closure = docks_.find(map(), map_.segments(), request.node, counts_.docks, meter);
+      closure = docks_.find(map(), map_.segments(), dock_requests_.front(), counts_.docks, meter);
     }
     all.docked.push_back(closure.has_value());
     if (!closure) continue;
@@ -209,11 +263,9 @@ Correction GlobalSlam::solved() {
 }
 
 void GlobalSlam::solve_due(SolveSchedule::Extent extent, WorkMeter* meter) {
-  const bool is_enough = extent == SolveSchedule::Extent::kNewest && solve_newest(meter);
-  if (!is_enough) {
-    solve(MapperTuning::kIterations, 0, meter);
-    schedule_.solved_all(map_.node_count());
-  }
+  if (extent == SolveSchedule::Extent::kNewest && solve_newest(meter)) return;
+  solve(MapperTuning::kIterations, 0, meter);
+  schedule_.solved_all(map_.node_count());
   leave_former(MapperTuning::kIterations, meter);
 }
 
@@ -276,6 +328,8 @@ OptimizerSummary GlobalSlam::solve(int max_iterations, std::uint64_t first_free_
     alone.meter = meter;
     former_ = FormerMap(map(), map_.segments(), session_begin_, alone);
   }
+  // What a few nodes are solved for says nothing of the map.
+  if (first_free_node > 0 && former_ && !former_gave_way_) options.held = former_->nodes();
   return solve(options);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "oort/loop_closure/closure_log.hpp"
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
+#include "oort/maintenance/prune.hpp"
 #include "oort/mapper/former_map.hpp"
 #include "oort/mapper/growing_map.hpp"
 #include "oort/mapper/segment_search.hpp"
@@ -28,6 +30,8 @@ struct Correction {
   GlobalCounts counts;  ///< since the beginning
   /// The clouds without what newer ones contradict, if anything was.
   std::optional<PointClouds> clouds;
+  /// First of all: what the nodes known to global SLAM were reduced to, if they were.
+  std::shared_ptr<const Pruned> reduced;
   std::vector<bool> docked;  ///< of requests for the dock, oldest first: whether a closure was found
   /// Untied nodes that are elsewhere, before the closures that may tie them.
   std::vector<SegmentFinding> elsewhere;
@@ -50,8 +54,13 @@ class GlobalSlam {
   /// A node's cloud with some readings taken out. What was drawn of it stays until begin_session().
   void replace_cloud(std::uint64_t node, PointClouds::Shared cloud) { map_.edit().clouds.set(node, std::move(cloud)); }
 
-  /// Notes that the newest node is at the dock and is to be linked to it. `locations` tell of docks.
-  void request_dock(const std::vector<Location>& locations);
+  void set_locations(std::vector<Location> locations) { map_.edit().locations = std::move(locations); }
+
+  /// Notes that the newest node is at the dock and is to be linked to it.
+  void request_dock() { dock_requests_.push_back(map_.node_count() - 1); }
+
+  /// Nodes to come are numbered by the last reduction.
+  void reduction_was_taken() { reduction_.is_under_way = false; }
 
   bool has_work() const;
   /// Does the next piece of work.
@@ -71,9 +80,10 @@ class GlobalSlam {
   const ClosureLog& closure_log() const { return closure_log_; }
 
  private:
-  struct DockRequest {
-    std::uint64_t node;
-    std::vector<Location> locations;
+  /// When a session that goes on and on is reduced next.
+  struct Reduction {
+    std::uint64_t due = 0;      // number of nodes
+    bool is_under_way = false;  // the local lane has not taken the last one yet
   };
 
   Correction nothing() const;
@@ -90,6 +100,10 @@ class GlobalSlam {
   OptimizerSummary solve(int max_iterations, std::uint64_t first_free_node, WorkMeter* meter);
   OptimizerSummary solve(const OptimizerOptions& options);
   void count_switches();
+  bool is_reduction_due() const;
+  Correction reduce(WorkMeter& meter);
+  void go_on_with(const Pruned& pruned, std::uint64_t size);
+  void begin_schedule();
   std::vector<bool> held() const;
 
   Parameters parameters_;
@@ -103,7 +117,8 @@ class GlobalSlam {
   std::optional<FormerMap> former_;            // what is before it, once something was solved
   bool former_stays_ = false;                  // whether it is where it was at the last solution
   bool former_gave_way_ = false;               // in this session: its nodes do not jump to and fro
-  std::deque<DockRequest> dock_requests_;
+  std::deque<std::uint64_t> dock_requests_;    // the nodes to be linked to the dock
+  Reduction reduction_;
   std::vector<bool> is_on_;  // each switchable edge, at the last solution
   GlobalCounts counts_;
   ClosureLog closure_log_;

@@ -10,6 +10,23 @@
 namespace oort {
 namespace {
 
+/// Between nodes that are far apart in time now their edges tell, as for a map that is loaded. The newest, which all
+/// stayed, go on in the scan matcher's frame, as a segment of their own.
+TrajectorySegments reduced_segments(const TrajectorySegments& before, const Map& reduced, const Renumbering& nodes) {
+  const std::uint64_t size = nodes.carrier.size();
+  const std::uint64_t newest = size - std::min<std::uint64_t>(MapperTuning::kUnsettledNodes, size);
+  const TrajectorySegments of_map = TrajectorySegments::of_map(reduced);
+  TrajectorySegments segments;
+  for (std::uint64_t node = 0; node < nodes.of(newest); ++node) {
+    segments.add(of_map.segment_begin(node) == node, of_map.is_matched(node), of_map.local_pose(node));
+  }
+  for (std::uint64_t node = newest; node < before.size(); ++node) {
+    segments.add(node == newest || before.segment_begin(node) == node, before.is_matched(node),
+                 before.local_pose(node));
+  }
+  return segments;
+}
+
 bool leads_out(const std::vector<NodeRange>& nodes, std::uint64_t i, std::uint64_t j) {
   return contains(nodes, i) != contains(nodes, j);
 }
@@ -21,6 +38,38 @@ void GrowingMap::set_map(Map map) {
   segments_ = TrajectorySegments::of_map(map_);
   placements_.clear();
   next_edge_id_ = next_edge_id(map_.graph);
+}
+
+void GrowingMap::reduce(const Map& reduced, const Renumbering& nodes) {
+  const std::uint64_t first_newer = nodes.carrier.size();
+  const std::uint64_t first_placed = node_count() - placements_.size();
+  const Map before = std::exchange(map_, reduced);
+  segments_ = reduced_segments(segments_, reduced, nodes);
+  map_.locations.clear();
+  for (const Location& location : before.locations) map_.locations.push_back(renumbered(location, nodes));
+  next_edge_id_ = next_edge_id(map_.graph);
+  std::vector<Placement> placements;
+  for (std::uint64_t node = first_newer; node < before.graph.nodes.size(); ++node) {
+    Placement placement = placements_[node - first_placed];
+    if (placement.from) placement.from = nodes.of(*placement.from);
+    const Pose2 pose =
+        placement.from ? map_.graph.nodes[*placement.from].pose * placement.T_from_node : before.graph.nodes[node].pose;
+    map_.graph.nodes.push_back({nodes.of(node), pose});
+    PointCloud cloud = before.clouds[node];
+    cloud.id = nodes.of(node);
+    map_.clouds.push_back(std::move(cloud));
+    placements.push_back(placement);
+  }
+  placements_ = std::move(placements);
+  for (Edge edge : before.graph.edges) {
+    if (std::max(edge.i, edge.j) < first_newer) continue;
+    edge = renumbered(edge, nodes);
+    edge.id = next_edge_id_++;
+    map_.graph.edges.push_back(edge);
+  }
+  for (const IncrementalResult& result : before.incremental_results) {
+    if (result.id >= first_newer) map_.incremental_results.push_back(renumbered(result, nodes));
+  }
 }
 
 void GrowingMap::add(const NodeAddition& addition) {

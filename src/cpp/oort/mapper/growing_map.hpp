@@ -9,6 +9,7 @@
 #include "oort/map/map.hpp"
 #include "oort/map/node_addition.hpp"
 #include "oort/map/node_range.hpp"
+#include "oort/map/renumbering.hpp"
 #include "oort/map/trajectory_segments.hpp"
 
 namespace oort {
@@ -30,6 +31,9 @@ class GrowingMap {
 
   /// Replaces everything. The map must be one that find_defect() accepts.
   void set_map(Map map);
+
+  /// Replaces the nodes that were reduced by what is left of them. Those that came since, and places, go over to it.
+  void reduce(const Map& reduced, const Renumbering& nodes);
 
   /// Adds a node at where the present poses and its placement put it.
   void add(const NodeAddition& addition);

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
 #include "oort/geometry/work_meter.hpp"
+#include "oort/maintenance/lifelong_tuning.hpp"
 #include "oort/maintenance/prune.hpp"
 #include "oort/map/locations.hpp"
 #include "oort/map/map_check.hpp"
@@ -21,6 +21,16 @@ namespace {
 Parameters checked(const Parameters& parameters) {
   check_parameters(parameters);
   return parameters;
+}
+
+/// The same for the nodes that came since, too: of so many.
+Renumbering with_newer(Renumbering nodes, std::uint64_t count) {
+  while (nodes.carrier.size() < count) {
+    nodes.kept.push_back(true);
+    nodes.carrier.push_back(nodes.size++);
+    nodes.T_carrier_node.emplace_back();
+  }
+  return nodes;
 }
 
 }  // namespace
@@ -36,6 +46,7 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, con
   if (local_.begins_map() && map_.node_count() > 0) {
     throw StateError("Mapper.add_scan: the map was loaded; call Mapper.begin_session before the first scan");
   }
+  renumbering_.reset();
   std::vector<Correction> due;
   {
     const WallClock clock(work_seconds_.waiting);
@@ -53,7 +64,9 @@ ScanResult Mapper::add_scan(const LaserScan& scan, const Pose2& T_odom_base, con
   told.corrected = corrected;
   std::vector<NodeAddition> nodes;
   if (local.node) nodes.push_back(std::move(local.node->addition));
-  lane_->advance(std::move(nodes), work_granted(scan.time));
+  std::optional<std::vector<Location>> places;
+  if (std::exchange(places_changed_, false)) places = map().locations;
+  lane_->advance(std::move(nodes), std::move(places), work_granted(scan.time));
   return told;
 }
 
@@ -82,46 +95,58 @@ std::optional<bool> Mapper::dock_closure_found() const {
 }
 
 bool Mapper::notify_docked() {
+  renumbering_.reset();
   request_dock_closure();
   take_effect(lane_->settle());
   take_effect({lane_->slam().link_docks()});
   return dock_closure_found().value_or(false);
 }
 
-std::vector<std::uint64_t> Mapper::begin_session(const Pose2& T_map_sensor) {
+void Mapper::begin_session(const Pose2& T_map_sensor) {
   check_reach(T_map_sensor, "Mapper.begin_session: the start pose");
+  renumbering_.reset();
   take_effect(lane_->settle());
   take_effect({lane_->slam().link_docks()});  // while nodes have the ids that it was asked of
   dock_request_.reset();
-  std::vector<std::uint64_t> carriers = prune();
+  prune();
   lane_->slam().begin_session();
   session_begin_ = map_.node_count();
   if (map_.node_count() == 0) {
     local_.begin_map();
-    return carriers;
+    return;
   }
   const std::uint64_t nearest = nearest_node(map().graph, T_map_sensor.translation());
   local_.begin_session({T_map_sensor, nearest, between(map().graph.nodes[nearest].pose, T_map_sensor)},
                        map_.node_count());
-  return carriers;
 }
 
-/// What became of each node.
-std::vector<std::uint64_t> Mapper::prune() {
-  if (parameters_.keep_views > 0) {
-    const std::optional<Pruned> pruned = oort::prune(map(), {static_cast<unsigned>(parameters_.keep_views), false});
-    if (pruned) {
-      use(pruned->map);
-      tracking_ = TrackingMonitor();  // it counts nodes
-      return pruned->carrier;
-    }
-  }
-  std::vector<std::uint64_t> same(map_.node_count());
-  std::iota(same.begin(), same.end(), std::uint64_t{0});
-  return same;
+void Mapper::prune() {
+  if (parameters_.keep_views == 0) return;
+  const PruneOptions options{static_cast<unsigned>(parameters_.keep_views), LifelongTuning::kMinPrunedShare};
+  const std::optional<Pruned> pruned = oort::prune(map(), options);
+  if (!pruned) return;
+  use(pruned->map);
+  tracking_ = TrackingMonitor();  // it counts nodes
+  note(pruned->nodes);
+}
+
+void Mapper::note(const Renumbering& nodes) {
+  renumbering_ = renumbering_ ? *renumbering_ * nodes : nodes;
+}
+
+/// Global SLAM reduced the nodes that it knew.
+void Mapper::reduce(const Pruned& reduced) {
+  const Renumbering all = with_newer(reduced.nodes, map_.node_count());
+  map_.reduce(reduced.map, reduced.nodes);
+  local_.renumber(reduced.nodes);
+  tracking_.renumber(reduced.nodes);
+  session_begin_ = reduced.nodes.left_before(session_begin_);
+  if (dock_request_) dock_request_->node = reduced.nodes.of(dock_request_->node);
+  note(all);
 }
 
 void Mapper::finish() {
+  renumbering_.reset();
   take_effect(lane_->settle());
   const bool cleaned = remove_body();
   take_effect({lane_->slam().finish()});
@@ -169,14 +194,17 @@ Pose2 Mapper::T_map_odom() const {
 
 void Mapper::create_location(const std::string& name_space, const std::string& id, const Pose2& T_map_location) {
   oort::create_location(map_.edit(), name_space, id, T_map_location);
+  places_changed_ = true;
 }
 
 void Mapper::create_points(const std::vector<std::string>& name_spaces, const std::vector<Eigen::Vector2d>& points,
                            const std::vector<std::string>& ids) {
   oort::create_points(map_.edit(), name_spaces, points, ids);
+  places_changed_ = true;
 }
 
 bool Mapper::delete_location(const std::string& name_space, const std::string& id) {
+  places_changed_ = true;
   return oort::delete_location(map_.edit(), name_space, id);
 }
 
@@ -224,6 +252,7 @@ void Mapper::take_apart(const SegmentFinding& elsewhere) {
 bool Mapper::take_effect(const std::vector<Correction>& corrections) {
   bool solved = false, closed = false;
   for (const Correction& correction : corrections) {
+    if (correction.reduced) reduce(*correction.reduced);
     for (const SegmentFinding& elsewhere : correction.elsewhere) take_apart(elsewhere);
     for (const Closure& closure : correction.closures) map_.add(closure);
     if (correction.solution) map_.apply(*correction.solution);
@@ -239,7 +268,7 @@ bool Mapper::take_effect(const std::vector<Correction>& corrections) {
   if (solved && map_.node_count() > 0) {
     tracking_.look_for_tie(map().graph, map_.segments().segment_begin(map_.node_count() - 1));
   }
-  return solved || closed;
+  return solved || closed || renumbering_.has_value();
 }
 
 void Mapper::add(const TrajectoryNode& node) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
@@ -73,9 +74,12 @@ class Mapper {
   bool notify_docked();
 
   /// The next scan begins a new segment at about this pose of the map. A map that shows most of its places more often
-  /// than keep_views asks for is pruned first (maintenance/prune.hpp). Returns the node that each node of the map
-  /// became or is carried by, in the order of their ids.
-  std::vector<std::uint64_t> begin_session(const Pose2& T_map_sensor);
+  /// than keep_views asks for is pruned first (maintenance/prune.hpp): see renumbering().
+  void begin_session(const Pose2& T_map_sensor);
+
+  /// What became of the nodes, if the last scan, session or finish() gave them other ids: global SLAM reduced the map
+  /// to the views that it needs, or begin_session() did. Tells it once.
+  std::optional<Renumbering> take_renumbering() { return std::exchange(renumbering_, std::nullopt); }
 
   /// The next scan makes a node whose edge to the last one is very uncertain.
   void resume_from_paused() { local_.interrupt(); }
@@ -119,7 +123,9 @@ class Mapper {
     std::size_t open;  // requests that nothing came of yet
     bool found;        // what came of the last
   };
-  std::vector<std::uint64_t> prune();
+  void prune();
+  void reduce(const Pruned& reduced);
+  void note(const Renumbering& nodes);
   void use(const Map& map);
   void take_apart(const SegmentFinding& elsewhere);
   bool take_effect(const std::vector<Correction>& corrections);
@@ -139,6 +145,8 @@ class Mapper {
   TrackingCounts tracking_counts_;
   GlobalCounts global_counts_;
   std::optional<DockRequest> dock_request_;
+  bool places_changed_ = false;  // since global SLAM was told of them
+  std::optional<Renumbering> renumbering_;
   WorkSeconds work_seconds_;    // of the local lane
   double last_time_ = 0.0;      // stamp of the last scan [s]
   double last_interval_ = 0.0;  // between it and the one before [s]

@@ -38,6 +38,7 @@ class SegmentSearch {
   void begin(std::uint64_t first_node, bool is_unknown);
   void forget() { first_.reset(); }
 
+  bool is_looking() const { return first_.has_value(); }
   bool is_due(std::uint64_t node_count) const { return first_ && node_count >= due_; }
 
   /// Looks for the newest node.

@@ -70,12 +70,22 @@ struct MapperTuning {
   /// which is done once the map has grown by one part in so many: all drawings together cost four of the final map's
   static constexpr std::uint64_t kRedrawParts = 3;
 
-  // When a map that is gone on with stays as it was (docs/lifelong.md).
+  // When a map that is gone on with stays as it was (docs/lifelong.md). A day's measurements moved places of a
+  // simulated home (seed 3) by up to 0.04 m.
   static constexpr double kMaxDeformed = 0.05;       ///< [m] by which the session's measurements move
   static constexpr double kMaxDeformedShare = 0.05;  ///< of its nodes at most
   /// Closures of the session that may be switched off for that: some, and a share of all.
   static constexpr double kMaxLostClosures = 2.0;
   static constexpr double kMaxLostShare = 0.1;
+
+  // When a session that goes on and on is reduced to the views that it needs (docs/lifelong.md).
+  static constexpr std::uint64_t kFirstReduction = 1000;  ///< nodes: three drives of four minutes through a home
+  static constexpr std::uint64_t kReductionGrowth = 2;    ///< times the nodes that were left
+  /// Of the nodes: a first session must drive the same ground again and again. Intel, whose loops are driven three
+  /// times, could lose half.
+  static constexpr double kMinFirstReducedShare = 0.6;
+  static constexpr double kMinReducedShare = 0.4;        ///< the same of a map that was gone on with, or reduced
+  static constexpr std::uint64_t kUnsettledNodes = 200;  ///< the newest: what they close may be still looked for
 
   static constexpr double kLooseSigma = 15.0;  ///< [m, rad] of an edge that shall tell nothing
 
@@ -83,7 +93,9 @@ struct MapperTuning {
   static constexpr double kWorkPerReferencePoint = 1.5;
   static constexpr double kWorkPerLookup = 0.0015;
   static constexpr double kWorkPerRayStep = 0.006;
-  static constexpr double kWeighedPlaces = 2.0;  ///< per search, usually
+  static constexpr double kWorkPerView = 50.0;      ///< node that is looked at whether it is needed,
+  static constexpr double kWorkPerReduced = 250.0;  ///< and for the rest of a reduction, beside solving
+  static constexpr double kWeighedPlaces = 2.0;     ///< per search, usually
 };
 
 }  // namespace oort

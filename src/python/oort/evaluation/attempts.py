@@ -12,7 +12,7 @@ from oort._core import SWITCH_ON, Map
 from oort.export.files import write_atomically
 from oort.recording import Pose
 
-ACCEPTED, CONTRADICTED = "accepted", "contradicted"
+ACCEPTED, CONTRADICTED, FOLDED = "accepted", "contradicted", "folded"
 MOST = 200_000
 """attempts that are kept at most: the newest; some 30 MB"""
 
@@ -24,12 +24,13 @@ class Attempt:
     query: int
     candidate: int
     verdict: str
-    """accepted; contradicted: accepted, but the last solution leaves it out; else why it was rejected"""
+    """accepted; contradicted: accepted, but the last solution leaves it out; folded: accepted, and gone or carried to
+    other nodes when the map was reduced (docs/lifelong.md); else why it was rejected"""
     T_candidate_query: Pose
     """where the match put the query; where the graph had it if there was no match"""
     inlier_ratio: float
     switch: float | None
-    """of an accepted one at the last solution"""
+    """of an accepted one at the last solution; None if it was rejected or is not in the map any more"""
 
 
 def judge_attempts(told: Sequence[tuple[int, int, str | None, Pose, float]], map_: Map) -> list[Attempt]:
@@ -39,8 +40,8 @@ def judge_attempts(told: Sequence[tuple[int, int, str | None, Pose, float]], map
     switches = dict(zip(ends, edges["switch"].tolist(), strict=True))
     attempts = []
     for query, candidate, rejection, pose, hits in told:
-        switch = None if rejection is not None else switches[query, candidate]
-        accepted = CONTRADICTED if switch is not None and switch < SWITCH_ON else ACCEPTED
+        switch = None if rejection is not None else switches.get((query, candidate))
+        accepted = FOLDED if switch is None else CONTRADICTED if switch < SWITCH_ON else ACCEPTED
         attempts.append(Attempt(query, candidate, rejection or accepted, pose, hits, switch))
     return attempts
 

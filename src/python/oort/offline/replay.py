@@ -46,16 +46,14 @@ class _Caller:
     recorder: TrajectoryRecorder
 
     def __call__(self, number: int, event: Event) -> None:
-        before = self.session.map.node_poses if event.call == "map/resume" else None
         try:
-            told = self.session.call(event.call, event.args)
+            self.session.call(event.call, event.args)
         except OortError as error:
             raise type(error)(f"event {number} ({event.call} at {event.t}): {error}") from error
         self.session.save_to("")
         if event.call in ("map/clear", "map/load", "map/reject"):
             self.recorder.forget_nodes()
-        if before is not None:
-            self.recorder.renumber(told, before, self.session.map.node_poses)
+        self.recorder.follow(self.session.mapper.take_renumbering())
 
 
 def replay(
@@ -91,6 +89,7 @@ def replay(
             continue
         if mapped is not None:
             result = _map_timed(session, mapped, watch)
+            recorder.follow(session.mapper.take_renumbering())
             log.add(scan.time, result, watch.scan_seconds[-1], watch.waited_seconds[-1])
             session.observe(mapped)
         else:
@@ -100,6 +99,7 @@ def replay(
         raise InputError(f"{recording.name}: no scan to map")
     schedule.finish(math.inf if options.until is None else log.times[0] + options.until)
     session.stop()
+    recorder.follow(session.mapper.take_renumbering())
     if session.mapper.num_nodes == 0:
         raise InputError(
             f"{recording.name}: no scan made it into a map: each has fewer than "

@@ -46,16 +46,17 @@ class TrajectoryRecorder:
         self._nodes = [_NO_NODE] * len(self._nodes)
         self._made_node = [False] * len(self._made_node)
 
-    def renumber(self, carriers: Sequence[int], before: NDArray[np.float64], after: NDArray[np.float64]) -> None:
-        """The map was pruned: each node became another or is carried by another, as its index in ``carriers`` tells.
-
-        ``before`` and ``after`` are the nodes' poses.
-        """
-        moved = between(after[np.array(carriers, dtype=np.int64)], before)
-        for scan, node in enumerate(self._nodes):
-            if node != _NO_NODE:
-                x, y, theta = compose(moved[node], self._relative[scan]).tolist()
-                self._nodes[scan], self._relative[scan] = carriers[node], (x, y, theta)
+    def follow(self, renumbering: tuple[NDArray[np.int64], NDArray[np.float64]] | None) -> None:
+        """Takes what Mapper.take_renumbering tells after a call: which nodes carry the scans now, and where."""
+        if renumbering is None:
+            return
+        carriers, T_carrier_node = renumbering
+        nodes = np.array(self._nodes, dtype=np.int64)
+        known = nodes != _NO_NODE
+        relative = np.array(self._relative, dtype=np.float64).reshape(-1, 3)
+        relative[known] = compose(T_carrier_node[nodes[known]], relative[known])
+        nodes[known] = carriers[nodes[known]]
+        self._nodes, self._relative = nodes.tolist(), [(x, y, theta) for x, y, theta in relative.tolist()]
 
     def carriers(self) -> NDArray[np.int64]:
         """(n,) the node that carries each scan, or the one of the scan next to it that has one; -1 if none has."""
@@ -91,7 +92,8 @@ class TrajectoryRecorder:
         # A node that a call made is the scan before the first that it carries.
         made = first - ~np.array(self._made_node, dtype=np.bool_)[first]
         for (before, begin), (after, end) in itertools.pairwise(zip(made, first, strict=True)):
-            progress[begin:end] = (np.arange(begin, end) - before) / (after - before)
+            if after > before:  # not where scans went over from nodes that are gone
+                progress[begin:end] = (np.arange(begin, end) - before) / (after - before)
         return progress
 
     def _carry(self, base: NDArray[np.float64], nodes: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from PIL import Image
 from oort._core import SWITCH_ON, Map, OccupancyGrid
 from oort.areas import areas_of_map, is_area
 from oort.errors import OortError
-from oort.evaluation.attempts import Attempt
+from oort.evaluation.attempts import FOLDED, Attempt
 from oort.evaluation.truth import Judgement
 from oort.export.map_server import grey_picture
 from oort.export.named_rooms import named_rooms
@@ -83,7 +83,7 @@ def closure_layer(map_: Map, attempts: Sequence[Attempt]) -> dict[str, Any]:
     known = {(a.query, a.candidate): a.inlier_ratio for a in attempts if a.switch is not None}
     ends = np.stack([edges["i"], edges["j"]], axis=1).astype(np.int64).reshape(-1, 2)
     ratios = [known.get((i, j), known.get((j, i), np.nan)) for i, j in ends.tolist()]
-    rejected = [a for a in attempts if a.switch is None]
+    rejected = [a for a in attempts if a.switch is None and a.verdict != FOLDED]
     shown = sorted(rejected, key=lambda a: -a.inlier_ratio)[:MOST_REJECTED]
     verdicts = ["accepted", "undone", *sorted({a.verdict for a in shown})]
     on = edges["switch"] >= SWITCH_ON
