@@ -258,7 +258,7 @@ def _by_coverage(reader: str) -> None:
         return change(rng, data if len(data) > 16 else begin[seed // 2 % len(begin)])[:max_size]
 
     for function in [thing for thing in gc.get_objects() if isinstance(thing, types.FunctionType)]:
-        if function.__module__.partition(".")[0] in ("oort", "rosbags"):  # all of Python would take a minute
+        if (function.__module__ or "").partition(".")[0] in ("oort", "rosbags"):  # all of Python would take a minute
             atheris.instrument_func(function)
     atheris.Setup(
         [sys.argv[0], *sys.argv[2:]], lambda data: try_one(reader, data, folder) and None, custom_mutator=mutated

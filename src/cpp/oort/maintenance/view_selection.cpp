@@ -19,8 +19,8 @@ namespace {
 using Key = std::tuple<std::uint64_t, long, long, unsigned>;  // part of the map, cell, side
 
 unsigned sector_of(double angle, unsigned count) {
-  const double share = (angle + M_PI) / (2.0 * M_PI);
-  return static_cast<unsigned>(std::floor(share * count)) % count;
+  const double turns = (angle + M_PI) / (2.0 * M_PI);  // headings of a loaded map may lie beyond a turn
+  return static_cast<unsigned>((turns - std::floor(turns)) * count) % count;
 }
 
 Key key_of(std::uint64_t part, const Eigen::Vector2d& point, double cell, double angle, unsigned sectors) {
