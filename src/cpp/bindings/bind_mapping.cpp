@@ -69,11 +69,23 @@ py::list list_of(const ClosureLog& log) {
   return list;
 }
 
+const char* name_of(OdometryFault::Kind kind) {
+  switch (kind) {
+    case OdometryFault::Kind::kJump:
+      return "jump";
+    case OdometryFault::Kind::kFreeze:
+      return "freeze";
+    case OdometryFault::Kind::kReversed:
+      return "reversed";
+  }
+  return "unknown";
+}
+
 py::dict dict_of(std::uint64_t count, const std::vector<OdometryFault>& faults) {
   py::list first;
   for (const OdometryFault& fault : faults) {
     py::dict one;
-    one["kind"] = fault.kind == OdometryFault::Kind::kJump ? "jump" : "freeze";
+    one["kind"] = name_of(fault.kind);
     one["time"] = fault.time;
     one["distance"] = fault.distance;
     one["angle"] = fault.angle;

@@ -54,6 +54,18 @@ TEST(TrajectorySegments, NeighborhoodIsAsMuchOfTheSegmentAsFits) {
   EXPECT_EQ(segments.neighborhood(7, 1), (Ids{7}));
 }
 
+TEST(TrajectorySegments, NodesThatAreFarApartCountAsSeveral) {
+  TrajectorySegments segments;
+  for (int k = 0; k < 8; ++k) segments.add(k == 0, true, {1.2 * k, 0.0, 0.0});
+  EXPECT_EQ(segments.travel_between(2, 4), 6u);
+  EXPECT_EQ(segments.travel_between(4, 2), 6u);
+  EXPECT_EQ(segments.neighborhood(4, 7), (Ids{3, 4, 5}));
+  EXPECT_TRUE(segments.begins_stride(0, 4));
+  EXPECT_FALSE(segments.begins_stride(1, 4));
+  EXPECT_TRUE(segments.begins_stride(2, 4));
+  EXPECT_TRUE(segments.begins_stride(3, 4));
+}
+
 TEST(TrajectorySegments, NeighborhoodLeavesOutWhatOdometryPlacedButNotTheNodeItself) {
   TrajectorySegments segments;
   for (int k = 0; k < 7; ++k) segments.add(false, k != 2 && k != 4, {});

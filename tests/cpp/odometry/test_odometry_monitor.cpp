@@ -117,6 +117,22 @@ TEST_F(Driving, StampsInBurstsAreNoAccelerations) {
   }
 }
 
+TEST_F(Driving, OdometryThatNeverWentBackwardsMayNotTellIt) {
+  EXPECT_FALSE(odometry(kStep).T_before_after_reversed) << "so short a way is within the window";
+  monitor.moved(kStep, false);
+  const MotionHypotheses hypotheses = odometry({1.0, 0.05, 0.2}, 1.0);
+  ASSERT_TRUE(hypotheses.T_before_after_reversed);
+  EXPECT_FALSE(hypotheses.is_doubted());
+  EXPECT_EQ(hypotheses.T_before_after_reversed->x, -1.0);
+  EXPECT_EQ(hypotheses.T_before_after_reversed->theta, 0.2);
+  monitor.moved({-1.0, -0.05, 0.2}, true);
+  ASSERT_EQ(monitor.fault_count(), 1u);
+  EXPECT_EQ(monitor.faults()[0].kind, OdometryFault::Kind::kReversed);
+  EXPECT_FALSE(odometry({-0.5, 0.0, 0.0}, 1.0).T_before_after_reversed) << "it does tell";
+  monitor.moved({-0.5, 0.0, 0.0}, false);
+  EXPECT_FALSE(odometry({0.5, 0.0, 0.0}, 1.0).T_before_after_reversed);
+}
+
 TEST_F(Driving, ClocksThatAreSetBackSayNothing) {
   drive(20);
   EXPECT_FALSE(odometry(kStep, -30.0).is_doubted());

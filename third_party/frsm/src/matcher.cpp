@@ -194,6 +194,7 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
   const Shape shape = fit_shape(table, points, match.pose, weight, params_.min_curvature, window);
   match.pose = slide_to_prior(match.pose, shape, search.objective, guess);
   count_hits(table, points, params_.hit_value, &match);
+  match.evidence = weight * match.score;
   match.information = shape.information;
   match.degenerate = shape.free_directions > 0;
   match.covariance =

@@ -3,6 +3,7 @@
 #include "frsm/tracker.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,6 +27,15 @@ constexpr double kWideWindowTheta = 0.5;  // [rad]
 constexpr double kWidestWindow = 2.0;       // [m]
 constexpr double kWidestWindowTheta = 1.0;  // [rad]
 constexpr int kMaxTiles = 1000;
+constexpr int kMaxCandidates = 150000;  // all are tried: cheaper than tiles up to there
+// A match that leads elsewhere than the odometry, tried as the first one is poor, must be so many times likelier (as a
+// logarithm) as odometry is seldom wrong. Looked at on sparse logs of Radish.
+constexpr double kFault = 12.0;
+// Points where no scan of the local map could see: what they count for the likelihood, of 1 for a point on the map, and
+// the least share of the others, and of hits among these, by which a match with few hits in all may be judged.
+constexpr double kUnknownValue = 0.5;
+constexpr double kLeastKnown = 0.2;
+constexpr double kKnownHits = 0.6;
 constexpr int kTellingHits = 4;  // times the fewest points that are matched
 // A view this wide turns without bias; of a narrower one this much of its edge is left out beside what is new, unless
 // too little would be left.
@@ -45,6 +55,7 @@ Eigen::Matrix3d diagonal(double sigma_xy, double sigma_theta) {
 
 MatcherParams bounded(MatcherParams params) {
   params.max_tiles = kMaxTiles;
+  params.max_candidates = kMaxCandidates;
   return params;
 }
 
@@ -93,16 +104,22 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
   join_pending();
   Prior expected = expect(time, odometry);
   hypothesis_ = 0;
-  is_unusual_ = !alternatives.empty() || (last_time_ && time - *last_time_ > kLongInterval);
+  const auto always = [](const Motion& motion) { return !motion.only_if_poor; };
+  is_unusual_ = std::any_of(alternatives.begin(), alternatives.end(), always) ||
+                (last_time_ && time - *last_time_ > kLongInterval);
   last_time_ = time;
   if (history_.table().empty()) return start(body, time, expected);
   Match match = try_match(body, expected, 1.0);
   for (std::size_t k = 0; k < alternatives.size(); ++k) {
+    const bool is_last_resort = alternatives[k].only_if_poor;
+    if (is_last_resort && !is_poor(match)) continue;
     const Prior other = expect(time, alternatives[k]);
-    if (consider(try_match(body, other, 1.0), match)) {
-      expected = other;
-      hypothesis_ = k + 1;
-    }
+    const Match tried = try_match(body, other, 1.0);
+    const bool better = is_last_resort ? tells(tried) && outweighs(tried, match, expected) : is_better(tried, match);
+    if (!better) continue;
+    match = tried;
+    expected = other;
+    hypothesis_ = k + 1;
   }
   match = recover(body, time, expected, odometry.has_value(), match);
   // On the window's border but with good hits, the pose is still the best known; it must not shape the map, though.
@@ -121,6 +138,7 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
     if (seen && ++rejected_ >= params_.max_rejected_scans) {  // a blind moment says nothing against the map
       ++restarts_;
       history_.clear();
+      views_.clear();
       return start(body, time, expected);
     }
   }
@@ -133,6 +151,7 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
 void Tracker::reset(const Pose& pose) {
   check(is_finite(pose), "the pose", "is not finite");
   history_.clear();
+  views_.clear();
   pending_.reset();
   velocity_.clear();
   drift_.setZero();
@@ -177,8 +196,10 @@ void Tracker::join_pending() {
   const Pending scan = std::move(*pending_);
   pending_.reset();
   history_.add(transform(scan.pose, scan.body), extract_contours(scan.body, params_.contours), scan.pose);
+  views_.emplace_back(scan.body, scan.pose);
+  while (views_.size() > static_cast<std::size_t>(history_.num_scans())) views_.pop_front();
   last_added_ = scan.pose;
-  last_seen_ = view_of(scan.body);
+  last_seen_ = sector_of(scan.body);
   ++added_scans_;
 }
 
@@ -219,13 +240,13 @@ Window Tracker::window(const Prior& prior, double scale) const {
 }
 
 // A sensor may look anywhere, backwards too: bearings are told from the middle of what it sees.
-Tracker::View Tracker::view_of(const Points& body) {
+Tracker::Sector Tracker::sector_of(const Points& body) {
   Point sum{0.0, 0.0};
   for (const Point& p : body) {
     const double range = std::hypot(p.x, p.y);
     if (range > 0.0) sum = {sum.x + p.x / range, sum.y + p.y / range};
   }
-  View view;
+  Sector view;
   view.middle = bearing(sum);
   for (const Point& p : body) {
     const double angle = wrap(bearing(p) - view.middle);
@@ -253,34 +274,87 @@ Points Tracker::without_new_edge(const Points& body, const Prior& prior) const {
 }
 
 Match Tracker::try_match(const Points& body, const Prior& prior, double widen) const {
-  return matcher_.match(history_.table(), without_new_edge(body, prior), prior.mean, window(prior, widen), &prior);
+  const Points points = without_new_edge(body, prior);
+  Match match = matcher_.match(history_.table(), points, prior.mean, window(prior, widen), &prior);
+  judge_by_known(points, match);
+  return match;
 }
 
-// Another match takes the place of the best one if clearly more points hit, or if it is free of the window's border.
-bool Tracker::consider(const Match& other, Match& best) {
+// Whether another match is better than the best one: clearly more points hit, or it is free of the window's border.
+bool Tracker::is_better(const Match& other, const Match& best) {
   const bool freed = best.saturated && !other.saturated && other.inlier_ratio >= best.inlier_ratio;
-  const bool better = freed || other.inlier_ratio > best.inlier_ratio + kWorthwhileHits;
-  if (better) best = other;
-  return better;
+  return freed || other.inlier_ratio > best.inlier_ratio + kWorthwhileHits;
+}
+
+bool Tracker::is_poor(const Match& match) const {
+  return match.status == Status::kNoOverlap ||
+         (match.points >= params_.matcher.min_points && (match.saturated || match.inlier_ratio < params_.retry_hits));
+}
+
+bool Tracker::tells(const Match& match) const {
+  return match.status == Status::kOk && match.inlier_ratio >= params_.retry_hits;
+}
+
+// Whether it is better by more than what speaks for the odometry. Without that, as good a match is found by chance
+// wherever the window is wide enough.
+bool Tracker::outweighs(const Match& other, const Match& best, const Prior& expected) {
+  const Eigen::Matrix3d information = expected.covariance.inverse();
+  const auto unlikelihood = [&](const Match& match) {
+    const Eigen::Vector3d d(match.pose.x - expected.mean.x, match.pose.y - expected.mean.y,
+                            wrap(match.pose.theta - expected.mean.theta));
+    return std::min(0.5 * d.dot(information * d), kFault);
+  };
+  return is_better(other, best) && other.evidence - unlikelihood(other) > best.evidence - unlikelihood(best);
 }
 
 // Odometry freezes and jumps at times. A poor match is tried again where the robot would be if it had kept its
-// velocity, then in a wider window; another pose is believed only if clearly more points hit.
+// velocity, then in a wider window.
 Match Tracker::recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best) {
-  const auto poor = [&] {
-    return best.status == Status::kNoOverlap ||
-           (best.points >= params_.matcher.min_points && (best.saturated || best.inlier_ratio < params_.retry_hits));
-  };
-  if (params_.retry_hits <= 0.0 || !poor()) return best;
+  if (params_.retry_hits <= 0.0 || !is_poor(best)) return best;
   ++retries_;
+  const auto consider = [&](const Match& other) {
+    if (outweighs(other, best, expected)) best = other;
+  };
   if (has_odometry && !params_.stationary_motion_model) {
-    const Prior kept{predict(time), drift_ + diagonal(params_.prior_sigma_xy, params_.prior_sigma_theta)};
-    consider(try_match(body, kept, 1.0), best);
+    consider(
+        try_match(body, {predict(time), drift_ + diagonal(params_.prior_sigma_xy, params_.prior_sigma_theta)}, 1.0));
   }
-  if (poor()) {
-    consider(try_match(body, {expected.mean, kRetryPrior * kRetryPrior * expected.covariance}, kRetryWindow), best);
+  if (is_poor(best)) {
+    consider(try_match(body, {expected.mean, kRetryPrior * kRetryPrior * expected.covariance}, kRetryWindow));
   }
   return best;
+}
+
+// What lies where no scan of the local map could see says nothing for or against it: a robot that comes around a
+// corner, or drives backwards, far from one scan to the next, sees mostly new walls. Of a match with few hits only the
+// points count that the map could show, if these are enough.
+void Tracker::judge_by_known(const Points& points, Match& match) const {
+  if (match.hits < params_.matcher.min_points || match.inlier_ratio >= params_.retry_hits) return;
+  const Table& table = history_.table();
+  int all = 0, known = 0, hits = 0;
+  double sum = 0.0;
+  for (const Point& p : drop_invalid(points)) {
+    if (std::hypot(p.x, p.y) > params_.table.radius) continue;
+    ++all;
+    const Point world = match.pose * p;
+    const auto covers = [&](const View& view) { return view.covers(world); };
+    if (std::none_of(views_.begin(), views_.end(), covers)) {
+      sum += kUnknownValue;
+      continue;
+    }
+    ++known;
+    const int value = table.value(table.index(world.x), table.index(world.y));
+    sum += value / 255.0;
+    if (value >= params_.matcher.hit_value) ++hits;
+  }
+  if (match.score > 0.0) match.evidence *= sum / (all * match.score);
+  if (known < std::max(static_cast<double>(kTellingHits * params_.matcher.min_points), kLeastKnown * all)) return;
+  const double ratio = hits / static_cast<double>(known);
+  if (match.status == Status::kLowHits) {
+    if (ratio < kKnownHits) return;
+    match.status = match.saturated ? Status::kSaturated : match.degenerate ? Status::kDegenerate : Status::kOk;
+  }
+  match.inlier_ratio = std::max(match.inlier_ratio, ratio);
 }
 
 bool Tracker::should_add(const Match& match) const {

@@ -53,7 +53,7 @@ void FrsmScanTracker::reset(const Pose2& T_local_sensor) {
 
 TrackedScan FrsmScanTracker::track(const frsm::Points& points, double time, const Motion& motion,
                                    const std::vector<Motion>& alternatives) {
-  const auto of = [](const Motion& m) { return frsm::Motion{to_frsm(m.T_before_after), m.covariance}; };
+  const auto of = [](const Motion& m) { return frsm::Motion{to_frsm(m.T_before_after), m.covariance, m.only_if_poor}; };
   std::vector<frsm::Motion> others;
   others.reserve(alternatives.size());
   for (const Motion& alternative : alternatives) others.push_back(of(alternative));

@@ -66,6 +66,8 @@ TrackedScan GridScanTracker::track(const frsm::Points& points, double /*time*/, 
   if (grids_.empty()) return begin(near, expected);
   TrackedScan tracked = match(near, expected);
   for (std::size_t k = 0; k < alternatives.size(); ++k) {
+    const bool is_poor = !tracked.usable() || tracked.inlier_ratio < LocalSlamTuning::kTellingInliers;
+    if (alternatives[k].only_if_poor && !is_poor) continue;
     TrackedScan other = match(near, pose_ * alternatives[k].T_before_after);
     if (other.inlier_ratio <= tracked.inlier_ratio + LocalSlamTuning::kAlternativeGain) continue;
     expected = pose_ * alternatives[k].T_before_after;

@@ -71,13 +71,17 @@ void IncrementalGraphBuilder::begin(const Pose2& T_local_sensor) {
 }
 
 TrackedScan IncrementalGraphBuilder::track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                                           const std::vector<Pose2>& alternatives,
+                                           const std::vector<Pose2>& alternatives, const std::optional<Pose2>& reversed,
                                            const std::optional<Eigen::Matrix3d>& covariance) {
   const Eigen::Matrix3d doubt = alternatives.empty() ? Eigen::Matrix3d::Zero() : doubted_motion();
   const auto motion = [&](const Pose2& T) { return Motion{T, covariance.value_or(prior_covariance(T)) + doubt}; };
   std::vector<Motion> others;
   others.reserve(alternatives.size());
   for (const Pose2& alternative : alternatives) others.push_back(motion(alternative));
+  if (reversed) {
+    others.push_back(motion(*reversed));
+    others.back().only_if_poor = true;
+  }
   TrackedScan tracked = tracker_->track(points, time, motion(T_previous_sensor), others);
   tracked.extent = extent_of(points);
   return tracked;

@@ -51,9 +51,10 @@ class IncrementalGraphBuilder {
   /// Takes the next scan: its returns in the sensor frame and the sensor's motion by odometry since the last one taken
   /// (since begin(): the identity).
   /// `alternatives`: what the motion may have been instead, where odometry is doubted.
+  /// `reversed`: what it may have been if a scan that moved as odometry says would fit badly.
   /// `covariance`: of the motion, along the axes of the frame before, where odometry's model does not tell.
   TrackedScan track(const frsm::Points& points, double time, const Pose2& T_previous_sensor,
-                    const std::vector<Pose2>& alternatives = {},
+                    const std::vector<Pose2>& alternatives = {}, const std::optional<Pose2>& reversed = std::nullopt,
                     const std::optional<Eigen::Matrix3d>& covariance = std::nullopt);
 
   /// Whether a scan's match says where it is: usable, and with an inlier ratio that is accepted.

@@ -17,6 +17,7 @@ namespace oort {
 struct Motion {
   Pose2 T_before_after;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  bool only_if_poor = false;  ///< as an alternative: tried only where the match with the first motion is poor
 };
 
 /// What a matcher said before a finer one took over.

@@ -67,17 +67,22 @@ void TrajectoryBuilder::track(LocalScan& scan, const MotionHypotheses& hypothese
     T_previous_sensor = Pose2{};
   }
   const bool is_doubted = !is_first && hypotheses.is_doubted();
-  const Pose2 T_odom_base_before = is_doubted ? scan.T_odom_base * inverse(hypotheses.T_before_after.front()) : Pose2{};
+  const bool is_judged = !is_first && !hypotheses.T_before_after.empty();
+  const Pose2 T_odom_base_before = is_judged ? scan.T_odom_base * inverse(hypotheses.T_before_after.front()) : Pose2{};
+  const auto motion_of_sensor = [&](const Pose2& T_before_after) {
+    return between(T_odom_sensor_tracked_, T_odom_base_before * T_before_after * T_base_sensor);
+  };
   std::vector<Pose2> alternatives;
   for (std::size_t k = 1; is_doubted && k < hypotheses.T_before_after.size(); ++k) {
-    const Pose2 T_odom_base = T_odom_base_before * hypotheses.T_before_after[k];
-    alternatives.push_back(between(T_odom_sensor_tracked_, T_odom_base * T_base_sensor));
+    alternatives.push_back(motion_of_sensor(hypotheses.T_before_after[k]));
   }
-  scan.tracked =
-      matcher_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor, alternatives, scan.motion_covariance);
+  std::optional<Pose2> reversed;
+  if (is_judged && hypotheses.T_before_after_reversed) reversed = motion_of_sensor(*hypotheses.T_before_after_reversed);
+  scan.tracked = matcher_.track(returns_of(scan.cloud), scan.cloud.time, T_previous_sensor, alternatives, reversed,
+                                scan.motion_covariance);
   scan.was_tracked = true;
   scan.missed = !is_first && !matcher_.is_placed(scan.tracked);
-  if (is_doubted) settle_odometry(scan, hypotheses, T_odom_base_before, T_base_sensor);
+  if (is_doubted || scan.tracked.hypothesis > 0) settle_odometry(scan, hypotheses, T_odom_base_before, T_base_sensor);
   if (!parameters_.use_odometry && !is_first && !scan.missed) follow_match(scan, T_base_sensor);
   if (scan.tracked.restarted) local_map_ = LocalMap::kFresh;
   // What another laser sees is not on the local map: it begins anew here, in the same frame.
@@ -92,7 +97,9 @@ void TrajectoryBuilder::track(LocalScan& scan, const MotionHypotheses& hypothese
 /// was found with does.
 void TrajectoryBuilder::settle_odometry(LocalScan& scan, const MotionHypotheses& hypotheses,
                                         const Pose2& T_odom_base_before, const Pose2& T_base_sensor) {
-  Pose2 moved = hypotheses.T_before_after[scan.tracked.hypothesis];
+  const std::size_t k = scan.tracked.hypothesis;
+  Pose2 moved =
+      k < hypotheses.T_before_after.size() ? hypotheses.T_before_after[k] : *hypotheses.T_before_after_reversed;
   const bool is_telling =
       !scan.missed && !scan.tracked.degenerate && scan.tracked.inlier_ratio >= LocalSlamTuning::kTellingInliers;
   if (is_telling) {

@@ -50,7 +50,7 @@ bool is_wide(const SearchWindow& window) {
 /// yet.
 bool is_seeking(const TrajectorySegments& segments, std::uint64_t query) {
   const std::uint64_t begin = segments.segment_begin(query);
-  return begin > 0 && query - begin < kWideScale.query_nodes;
+  return begin > 0 && segments.travel_between(begin, query) < kWideScale.query_nodes;
 }
 
 /// The window around the expected pose that one scan is enough for.
@@ -59,14 +59,11 @@ SearchWindow narrowed(SearchWindow window) {
   return window;
 }
 
-std::uint64_t id_distance(std::uint64_t a, std::uint64_t b) {
-  return a > b ? a - b : b - a;
-}
-
 /// Whether two nodes follow so closely on one another that the trajectory links them better than a closure could. Nodes
 /// of other segments never do: nothing tracked the sensor from one to the other.
 bool is_recent(const TrajectorySegments& segments, std::uint64_t node, std::uint64_t query, int id_threshold) {
-  return segments.same_segment(node, query) && id_distance(node, query) < static_cast<std::uint64_t>(id_threshold);
+  return segments.same_segment(node, query) &&
+         segments.travel_between(node, query) < static_cast<std::uint64_t>(id_threshold);
 }
 
 /// What a closure would move: from where the graph expects node `to` to where the match puts it.
@@ -108,11 +105,15 @@ void LoopClosureBuilder::look_before(const Map& map, const TrajectorySegments& s
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
   }
+  const auto strides = [&](std::uint64_t node) {
+    return segments.travel_between(0, node) / LoopClosureTuning::kWideStride;
+  };
+  const bool looks_wide = query == 0 || strides(query) != strides(query - 1);
   for (const std::uint64_t candidate : candidates(map, segments, query, end)) {
     const SearchWindow window = this->window(map, query, candidate);
     const bool wide = search_.is_adaptive() && is_wide(window);
     if (wide && is_seeking(segments, query)) waiting_.push_back({query, candidate, narrowed(window)});
-    if (wide && query % LoopClosureTuning::kWideStride != 0) continue;
+    if (wide && !looks_wide) continue;
     waiting_.push_back({query, candidate, window});
   }
 }
@@ -174,8 +175,7 @@ std::vector<std::uint64_t> LoopClosureBuilder::candidates(const Map& map, const 
   std::vector<std::pair<double, std::uint64_t>> by_distance;
   for (const Node& node : map.graph.nodes) {
     if (node.id >= end) break;
-    const bool has_submap =
-        (node.id - segments.segment_begin(node.id)) % static_cast<std::uint64_t>(search.candidate_stride) == 0;
+    const bool has_submap = segments.begins_stride(node.id, static_cast<std::uint64_t>(search.candidate_stride));
     const double distance = (node.pose.translation() - center).norm();
     double reach = search.max_candidate_distance;
     if (node.id < from_query_.size() && from_query_[node.id]) {
@@ -200,7 +200,7 @@ std::vector<std::uint64_t> LoopClosureBuilder::nearest(const std::vector<std::pa
   const auto hops = std::max<std::uint64_t>((static_cast<std::uint64_t>(search.submap_neighborhood_size) + 1) / 2, 1);
   std::vector<std::uint64_t> chosen;
   const auto covered = [&](std::uint64_t node, std::uint64_t by) {
-    return segments.same_segment(node, by) && id_distance(node, by) <= hops;
+    return segments.same_segment(node, by) && segments.travel_between(node, by) <= hops;
   };
   for (const auto& entry : by_distance) {
     const std::uint64_t node = entry.second;

@@ -3,6 +3,7 @@
 #include "oort/map/trajectory_segments.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "oort/map/tuning.hpp"
 
@@ -17,7 +18,11 @@ bool is_rigid(const Eigen::Matrix3d& covariance) {
 
 void TrajectorySegments::add(bool begins_segment, bool matched, const Pose2& T_local_sensor) {
   const std::uint64_t node = local_poses_.size();
-  first_.push_back(begins_segment || node == 0 ? node : first_.back());
+  const bool is_first = begins_segment || node == 0;
+  const double step = is_first ? 0.0 : between(local_poses_.back(), T_local_sensor).translation().norm();
+  const auto steps = static_cast<std::uint64_t>(std::max(1.0, std::round(step / MapTuning::kNodeSpacing)));
+  travel_.push_back(node == 0 ? 0 : travel_.back() + steps);
+  first_.push_back(is_first ? node : first_.back());
   matched_.push_back(matched);
   local_poses_.push_back(T_local_sensor);
 }
@@ -54,11 +59,22 @@ std::uint64_t TrajectorySegments::segment_end(std::uint64_t node) const {
   return static_cast<std::uint64_t>(end - first_.begin());
 }
 
+std::uint64_t TrajectorySegments::travel_between(std::uint64_t a, std::uint64_t b) const {
+  return travel_[std::max(a, b)] - travel_[std::min(a, b)];
+}
+
+bool TrajectorySegments::begins_stride(std::uint64_t node, std::uint64_t stride) const {
+  const std::uint64_t begin = segment_begin(node);
+  return node == begin || travel_between(begin, node) / stride != travel_between(begin, node - 1) / stride;
+}
+
 std::vector<std::uint64_t> TrajectorySegments::neighborhood(std::uint64_t node, std::uint64_t size) const {
-  const std::uint64_t before = std::min(size / 2, node - segment_begin(node));
-  const std::uint64_t end = std::min(segment_end(node), node - before + std::max<std::uint64_t>(size, 1));
+  const std::uint64_t before = std::min(size / 2, travel_between(segment_begin(node), node));
+  const std::uint64_t end_of_travel = travel_[node] - before + std::max<std::uint64_t>(size, 1);
+  std::uint64_t first = node;
+  while (first > segment_begin(node) && travel_between(first - 1, node) <= before) --first;
   std::vector<std::uint64_t> nodes;
-  for (std::uint64_t other = node - before; other < end; ++other) {
+  for (std::uint64_t other = first; other < segment_end(node) && travel_[other] < end_of_travel; ++other) {
     if (matched_[other] || other == node) nodes.push_back(other);
   }
   return nodes;

@@ -29,14 +29,21 @@ class TrajectorySegments {
   std::uint64_t segment_begin(std::uint64_t node) const { return first_[node]; }
   std::uint64_t segment_end(std::uint64_t node) const;  ///< one past the last node of the node's segment
 
-  /// The matched ones among up to `size` nodes of the node's segment with the node in their middle, in the order of
-  /// their ids, and the node itself.
+  /// How many nodes at the usual spacing lead from one node to the other: where nodes are counted for the way between
+  /// them, those that are farther apart (scans are rare) count as several.
+  std::uint64_t travel_between(std::uint64_t a, std::uint64_t b) const;
+  /// Whether the node is the first of its segment, or the first of another `stride` of such nodes since then.
+  bool begins_stride(std::uint64_t node, std::uint64_t stride) const;
+
+  /// The matched ones among up to `size` nodes at the usual spacing of the node's segment with the node in their
+  /// middle, in the order of their ids, and the node itself.
   std::vector<std::uint64_t> neighborhood(std::uint64_t node, std::uint64_t size) const;
 
  private:
   std::vector<std::uint64_t> first_;  ///< per node: the first node of its segment
   std::vector<bool> matched_;
   std::vector<Pose2> local_poses_;
+  std::vector<std::uint64_t> travel_;  ///< per node: nodes at the usual spacing before it
 };
 
 }  // namespace oort

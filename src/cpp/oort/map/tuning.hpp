@@ -18,6 +18,10 @@ struct MapTuning {
   /// [m] The same of an edge from which on it tells nothing of a place: of pauses (12.6) and sessions (15.8).
   static constexpr double kMaxPlacedDeviation = 5.0;
 
+  /// [m] Nodes lie 0.2 to 0.4 m apart where scans are taken at usual rates. Farther apart, each counts as that many of
+  /// them where nodes are counted for the way between them.
+  static constexpr double kNodeSpacing = 0.4;
+
   /// [m] Poses farther from the origin come from a broken input.
   static constexpr double kMaxCoordinate = 1e5;
 

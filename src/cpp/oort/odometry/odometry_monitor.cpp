@@ -62,6 +62,10 @@ MotionHypotheses OdometryMonitor::judge(double time, const Pose2& T_before_after
       if (on) hypotheses.T_before_after.push_back(Pose2{});
     }
   }
+  if (T_before_after.x < -OdometryTuning::kBackwards) knows_backwards_ = true;
+  if (!knows_backwards_ && !hypotheses.is_doubted() && T_before_after.x > OdometryTuning::kReversible) {
+    hypotheses.T_before_after_reversed = Pose2{-T_before_after.x, -T_before_after.y, T_before_after.theta};
+  }
   stood_ = is_still(T_before_after) ? stood_ + interval : 0.0;
   judged_doubted_ = hypotheses.is_doubted();
   return hypotheses;
@@ -81,8 +85,9 @@ void OdometryMonitor::moved(const Pose2& T_before_after, bool is_matched) {
     if (frozen && !is_frozen_) add_fault(OdometryFault::Kind::kFreeze, missed_);
     is_frozen_ = is_frozen_ || frozen;
   } else {
-    if (judged_doubted_ && is_matched && !is_frozen_) {
-      add_fault(OdometryFault::Kind::kJump, between(judged_.T_before_after, T_before_after));
+    if (is_matched && !is_frozen_) {
+      add_fault(judged_doubted_ ? OdometryFault::Kind::kJump : OdometryFault::Kind::kReversed,
+                between(judged_.T_before_after, T_before_after));
     }
     is_frozen_ = false;
     missed_ = Pose2{};

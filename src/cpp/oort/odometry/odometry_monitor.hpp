@@ -13,8 +13,9 @@ namespace oort {
 /// A moment at which odometry said what no robot does.
 struct OdometryFault {
   enum class Kind {
-    kJump,    ///< it moved by more than a robot can
-    kFreeze,  ///< it stood still at once while the robot went on
+    kJump,      ///< it moved by more than a robot can
+    kFreeze,    ///< it stood still at once while the robot went on
+    kReversed,  ///< it went ahead while the robot drove backwards
   };
   Kind kind = Kind::kJump;
   double time = 0.0;      ///< [s]
@@ -27,6 +28,9 @@ struct MotionHypotheses {
   /// Of the base, the likeliest first; the scan decides. One alone: odometry's, which is plausible.
   std::vector<Pose2> T_before_after;
   Pose2 T_before_after_odometry;
+  /// What the base did where its encoders count the turns of wheels without their sense: the same way backwards. Tried
+  /// where the scan does not fit where odometry leads.
+  std::optional<Pose2> T_before_after_reversed;
   bool is_standing = false;  ///< whether odometry says that the base stands
 
   bool is_doubted() const { return T_before_after.size() > 1; }
@@ -65,7 +69,8 @@ class OdometryMonitor {
 
   std::optional<double> last_time_;
   ScanPace pace_;
-  Motion judged_;  // by odometry, not yet accepted
+  Motion judged_;                 // by odometry, not yet accepted
+  bool knows_backwards_ = false;  // odometry has said that the base went backwards
   bool judged_doubted_ = false;
   std::optional<Motion> believed_;  // the last motion
   Pose2 missed_;                    // what was accepted while odometry was frozen

@@ -94,6 +94,10 @@ struct OdometryTuning {
   // Faults: what odometry missed in all while it should have stood, from which on it is frozen.
   static constexpr double kFrozenError = 0.1;        ///< [m]
   static constexpr double kFrozenErrorTheta = 0.15;  ///< [rad]
+  /// [m] Faults: a way that is not shorter may have been driven backwards by a base whose odometry does not tell;
+  /// shorter ones are within the window anyway.
+  static constexpr double kReversible = 0.1;
+  static constexpr double kBackwards = 0.01;  ///< [m] by which odometry says that the base went backwards, beyond noise
   // Faults: a jump that a robot may have driven while odometry stood still, not for longer than it stays frozen, is
   // believed first.
   static constexpr double kMaxFreeze = 10.0;       ///< [s]

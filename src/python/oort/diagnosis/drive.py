@@ -62,6 +62,11 @@ def _odometry_faults(faults: Mapping[str, Any]) -> list[Trouble]:
             "odometry moves farther than a robot can",
             "look for a base driver that restarts, two programs that publish odometry, or a pose that is corrected",
         ),
+        (
+            "reversed",
+            "odometry goes ahead while the robot drives backwards",
+            "give the base's driver encoders, or motor commands, that tell the sense of rotation",
+        ),
     ):
         those = [fault for fault in faults["first"] if fault["kind"] == kind]
         if not those:

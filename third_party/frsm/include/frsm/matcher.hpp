@@ -60,9 +60,10 @@ struct Match {
   Status status = Status::kOk;
   Pose pose;                  ///< T_table_body
   double score = 0.0;         ///< mean table value under the points, 0..1 of the largest value
+  double evidence = 0.0;      ///< log-likelihood of the scan there: information_scale * N_eff * score
   int hits = 0;               ///< points that lie on the map
   int points = 0;             ///< valid points
-  double inlier_ratio = 0.0;  ///< hits / points
+  double inlier_ratio = 0.0;  ///< hits / points; of the Tracker's, where it is low, among the points that its map knows
   /// Of the match alone (x, y, theta), in the table's axes, from the shape of the score; 0 along degenerate directions.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   /// Positive definite, in the table's axes: the match fused with the prior. Without a prior, degenerate directions

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "frsm/matcher.hpp"
 #include "frsm/table.hpp"
 #include "frsm/velocity.hpp"
+#include "frsm/view.hpp"
 
 namespace frsm {
 
@@ -62,7 +64,8 @@ class Tracker {
   /// The first scan after construction, reset() or a fresh start has nothing to match and returns kNoOverlap.
   /// Throws std::invalid_argument on an odometry that is not finite, or whose covariance is not positive semi-definite.
   /// `alternatives`: what the motion may have been instead, where odometry is doubted. Each is tried; another one than
-  /// the odometry's is believed only if clearly more points hit. hypothesis() tells which.
+  /// the odometry's is believed only if clearly more points hit. hypothesis() tells which. One that is to be tried only
+  /// if the match with the odometry is poor must see all directions with at least `retry_hits`, too.
   Match track(const Points& body, double time, const std::optional<Motion>& odometry,
               const std::vector<Motion>& alternatives = {});
 
@@ -101,19 +104,23 @@ class Tracker {
     Points body;
     Pose pose;
   };
-  struct View {
+  struct Sector {
     double middle = 0.0;  // the mean bearing [rad]
     double right = 0.0;   // its edges, seen from there [rad]
     double left = 0.0;
   };
-  static View view_of(const Points& body);
+  static Sector sector_of(const Points& body);
   void join_pending();
   Points without_new_edge(const Points& body, const Prior& prior) const;
   Prior expect(double time, const std::optional<Motion>& odometry) const;
   Pose predict(double time) const;
   Window window(const Prior& prior, double scale) const;
   Match try_match(const Points& body, const Prior& prior, double widen) const;
-  static bool consider(const Match& other, Match& best);
+  bool is_poor(const Match& match) const;
+  bool tells(const Match& match) const;
+  void judge_by_known(const Points& body, Match& match) const;
+  static bool outweighs(const Match& other, const Match& best, const Prior& expected);
+  static bool is_better(const Match& other, const Match& best);
   Match recover(const Points& body, double time, const Prior& expected, bool has_odometry, Match best);
   Match start(const Points& body, double time, const Prior& expected);
   bool should_add(const Match& match) const;
@@ -122,9 +129,10 @@ class Tracker {
   TrackerParams params_;
   Matcher matcher_;
   History history_;
+  std::deque<View> views_;  // of the scans of the local map
   Pose pose_;
   Pose last_added_;
-  View last_seen_;  // of the returns of the scan that joined last
+  Sector last_seen_;  // of the returns of the scan that joined last
   Eigen::Matrix3d drift_ =
       Eigen::Matrix3d::Zero();      // covariance of the motion since the last usable match, table's axes
   std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled

@@ -26,6 +26,7 @@ using Points = std::vector<Point>;
 struct Motion {
   Pose delta;                                            ///< current body pose seen from the previous body frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of delta (x, y, theta), axes of the previous body frame
+  bool only_if_poor = false;  ///< as an alternative: tried only where the match with the odometry is poor
 };
 
 /// Wraps an angle to [-pi, pi). [rad]
