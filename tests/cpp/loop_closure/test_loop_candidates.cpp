@@ -127,7 +127,7 @@ TEST_F(CandidatesTest, NeighborhoodsEndWithTheirSegment) {
 }
 
 TEST_F(CandidatesTest, EquallyNearOnesAreInTheOrderOfTheirIds) {
-  for (int k = 0; k < 60; ++k) add(k % 2 == 0 ? 1.0 : -1.0);
+  for (int k = 0; k < 60; ++k) add(k % 2 == 0 ? 0.1 : -0.1);
   add(0.0);
   EXPECT_EQ(candidates(60), (Ids{0, 9, 18, 27}));
 }
