@@ -20,6 +20,7 @@ std::vector<bool> largest_part(const Graph& graph, const TrajectorySegments& seg
   for (const std::uint64_t part : parts) ++sizes[part];
   const auto largest = static_cast<std::uint64_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   std::vector<bool> nodes;
+  nodes.reserve(parts.size());
   for (const std::uint64_t part : parts) nodes.push_back(part == largest);
   return nodes;
 }

@@ -109,7 +109,7 @@ def replay(
     return Drive(recording, parameters, session, recorder, watch, duration, options.keep_attempts, log)
 
 
-def _map_timed(session: Session, scan: Scan, watch: Stopwatch) -> ScanResult:
+def _map_timed(session: Session, scan: Scan, watch: Stopwatch) -> ScanResult | None:
     """Maps a scan, and notes what it took and what of it was waiting for the global lane."""
     started, waited = time.perf_counter(), session.mapper.work_seconds["waiting"]
     result = session.add_scan(scan)
