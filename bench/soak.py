@@ -42,6 +42,7 @@ class Hour:
     hour: int
     nodes: int
     file_mb: float
+    """with the earlier versions that are kept"""
     memory_mb: float
     files: int
     """file handles that are open"""
