@@ -113,7 +113,8 @@ def ask(peer: Peer, service: str, kind: str = "Empty", **fields: Any) -> Any:
 def mapping(peer: Peer, folder: Path, drive: Drive, rate: float, resolution: float) -> Iterator[tuple[str, str]]:
     """The drive is mapped and saved."""
     seconds = float(drive.odometry_times[-1] - drive.odometry_times[0])
-    with running(peer, folder, **{"output_map.probability_grid.resolution": resolution}) as program:
+    cell: dict[str, Any] = {"output_map.probability_grid.resolution": resolution}
+    with running(peer, folder, **cell) as program:
         grids = peer.hear("map", OccupancyGrid, latched=True)
         told, poses, player = peer.hear("/diagnostics", DiagnosticArray), Poses(peer), Player(peer, drive, rate)
 

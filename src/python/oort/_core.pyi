@@ -490,7 +490,7 @@ class Hypothesis:
     def counts(self) -> dict[str, int]:
         """What the support is made of."""
     @property
-    def covariance(self) -> NDArray[np.float64]:
+    def covariance(self) -> Annotated[NDArray[np.float64], "[3, 3]"]:
         """(3, 3) of x, y, theta, along the axes of the map."""
     @property
     def support(self) -> float:
@@ -534,8 +534,11 @@ class Localizer:
         ranges: ArrayLike,
         odometry: tuple[float, float, float],
         sweep: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None,
-    ) -> None:
-        """Takes the next scan as Mapper.add_ranges does. Raises InputError; nothing changes then."""
+    ) -> LocalizationState:
+        """Takes the next scan with T_odom_base at its stamp and, for one whose beams were not measured at once, where
+        the base was at the first and at the last beam, seen from where it was at the stamp. Raises InputError;
+        nothing changes then.
+        """
     def add_ranges_of_other(
         self,
         sensor_on_base: tuple[float, float, float],
@@ -560,7 +563,7 @@ class Localizer:
     def T_map_sensor(self) -> tuple[float, float, float] | None:
         """The sensor's pose at the latest scan; None while searching."""
     @property
-    def covariance(self) -> NDArray[np.float64]:
+    def covariance(self) -> Annotated[NDArray[np.float64], "[3, 3]"]:
         """(3, 3) of T_map_sensor, along the axes of the map."""
     @property
     def state(self) -> LocalizationState:

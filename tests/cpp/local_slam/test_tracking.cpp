@@ -3,8 +3,11 @@
 // How well the place is known (docs/tracking.md), and what is done when odometry and scans contradict each other.
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "mapping_fixtures.hpp"
 #include "oort/local_slam/tracking_state.hpp"
+#include "oort/maintenance/tied_segments.hpp"
 
 namespace oort {
 namespace {
@@ -12,10 +15,21 @@ namespace {
 using testing::kMount;
 using State = TrackingState;
 
-Graph closed(std::uint64_t i, std::uint64_t j, double switch_value) {
+struct Tie {
+  std::uint64_t i, j;
+  double switch_value;
+};
+
+/// Of 30 nodes in three segments: the first node of the part that closures hold together with the last one.
+std::uint64_t part_begin(const std::vector<Tie>& ties) {
   Graph graph;
-  graph.switchable_edges.push_back({0, i, j, {}, switch_value});
-  return graph;
+  TrajectorySegments segments;
+  for (std::uint64_t node = 0; node < 30; ++node) {
+    graph.nodes.push_back({node, {}});
+    segments.add(node % 10 == 0, true, {});
+  }
+  for (const Tie& tie : ties) graph.switchable_edges.push_back({0, tie.i, tie.j, {}, tie.switch_value});
+  return closed_parts(graph, segments).back();
 }
 
 TEST(TrackingMonitorTest, MissedScansAreUncertainAndManyAreLost) {
@@ -27,27 +41,37 @@ TEST(TrackingMonitorTest, MissedScansAreUncertainAndManyAreLost) {
   EXPECT_EQ(monitor.update(true), State::kUncertain);
 }
 
-TEST(TrackingMonitorTest, ALooseChainIsUncertainUntilAClosureThatIsOnTiesIt) {
+TEST(TrackingMonitorTest, AnUntiedSegmentIsUncertainUntilAClosureThatIsOnTiesIt) {
   TrackingMonitor monitor;
-  monitor.add_untied(10, false);
+  monitor.add_untied(20, false);
   EXPECT_EQ(monitor.update(false), State::kUncertain);
-  for (const Graph& graph : {closed(12, 10, 1.0), closed(8, 3, 1.0), closed(12, 3, 0.4)}) {
-    monitor.look_for_tie(graph, 10);  // within itself; elsewhere; switched off
+  for (const Tie& tie : {Tie{22, 20, 1.0}, Tie{18, 3, 1.0}, Tie{22, 3, 0.4}}) {
+    monitor.look_for_tie(part_begin({tie}));  // within itself; elsewhere; switched off
     EXPECT_EQ(monitor.update(false), State::kUncertain);
   }
-  monitor.look_for_tie(closed(12, 3, 0.9), 10);
+  monitor.look_for_tie(part_begin({{22, 3, 0.9}}));
   EXPECT_EQ(monitor.update(false), State::kTracking);
 }
 
-TEST(TrackingMonitorTest, AChainLooseOnALooseChainMustBeTiedToWhatWasBeforeBoth) {
+TEST(TrackingMonitorTest, AnUntiedSegmentAfterAnotherMustBeTiedToWhatWasBeforeBoth) {
   TrackingMonitor monitor;
   monitor.add_untied(10, true);
   monitor.add_untied(20, false);
   EXPECT_EQ(monitor.update(false), State::kLost);  // a guess upon a guess
-  monitor.look_for_tie(closed(25, 12, 1.0), 20);
+  monitor.look_for_tie(part_begin({{25, 12, 1.0}}));
   EXPECT_EQ(monitor.update(false), State::kLost);
-  monitor.look_for_tie(closed(3, 25, 1.0), 20);
+  monitor.look_for_tie(part_begin({{25, 12, 1.0}, {3, 11, 1.0}}));  // by way of the other
   EXPECT_EQ(monitor.update(false), State::kTracking);
+}
+
+TEST(TrackingMonitorTest, WhatNothingSpeaksAgainstIsBelieved) {
+  TrackingMonitor monitor;
+  monitor.add_untied(10, true);
+  EXPECT_EQ(monitor.update(false), State::kLost);
+  monitor.trust(true);
+  EXPECT_EQ(monitor.update(false), State::kTracking);
+  monitor.add_untied(20, false);
+  EXPECT_EQ(monitor.update(false), State::kUncertain) << "what is believed is no guess any more";
 }
 
 /// Laps through the room, by odometry that fails from one scan on.

@@ -37,6 +37,15 @@ TEST(TrajectorySegments, KnowWhereSegmentsBeginAndEnd) {
   EXPECT_FALSE(segments.same_segment(3, 4));
 }
 
+TEST(TrajectorySegments, ASegmentIsSplit) {
+  TrajectorySegments segments = make_segments({3, 5, 4});
+  segments.split(5);
+  const Ids begins{0, 0, 0, 3, 3, 5, 5, 5, 8, 8, 8, 8};
+  for (std::uint64_t k = 0; k < begins.size(); ++k) EXPECT_EQ(segments.segment_begin(k), begins[k]) << k;
+  EXPECT_EQ(segments.segment_end(3), 5u);
+  EXPECT_EQ(segments.neighborhood(5, 5), (Ids{5, 6, 7}));
+}
+
 TEST(TrajectorySegments, TheFirstNodeBeginsASegmentWhateverIsSaid) {
   TrajectorySegments segments;
   segments.add(false, true, {1.0, 2.0, 3.0});

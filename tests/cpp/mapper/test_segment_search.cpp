@@ -95,8 +95,8 @@ TEST(SegmentSearchTest, AtTheEndWhatNoClosureTiesIsLookedForAtAllHeadings) {
     if (node.id >= begin) node.pose = Pose2{3.0, -2.0, 2.0} * node.pose;
   }
   SegmentSearch search{documented_parameters()};
-  int looks = 100;
-  const std::vector<SegmentFinding> findings = search.look_for_all(map, segments, looks);
+  WorkBudget budget(1e7), nothing(0.0);
+  const std::vector<SegmentFinding> findings = search.look_for_all(map, segments, budget);
   const auto found = std::find_if(findings.begin(), findings.end(), [begin](const SegmentFinding& finding) {
     return finding.nodes.front().begin == begin;  // the laps have segments of their own, that nothing ties now
   });
@@ -106,15 +106,14 @@ TEST(SegmentSearchTest, AtTheEndWhatNoClosureTiesIsLookedForAtAllHeadings) {
   const Pose2 off = between(home, found->T_new_old * map.graph.nodes.back().pose);
   EXPECT_LT(off.translation().norm(), 0.1);
   EXPECT_LT(std::abs(off.theta), 0.05);
-  looks = 0;
-  EXPECT_TRUE(search.look_for_all(map, segments, looks).empty()) << "it may look no more";
+  EXPECT_TRUE(search.look_for_all(map, segments, nothing).empty()) << "it may look no more";
 }
 
 TEST(SegmentSearchTest, LooksForNothingOnAnEmptyMap) {
   SegmentSearch search{Parameters()};
   EXPECT_FALSE(search.is_due(0));
-  int looks = 10;
-  EXPECT_TRUE(search.look_for_all(Map{}, TrajectorySegments(), looks).empty());
+  WorkBudget budget(1e7);
+  EXPECT_TRUE(search.look_for_all(Map{}, TrajectorySegments(), budget).empty());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from oort.errors import InputError
 from oort.poses import between
 from oort.report.arrays import unpack
 from oort.report.page import make_report_page, read_page_data
-from oort.simulate import Drive
+from oort.simulate import Drive, SimulationConfig, simulate_drive
 from oort.simulate.writers import write_carmen, write_truth
 
 _HOSTILE = "</script><img src=x onerror=document.title='owned'>"
@@ -157,6 +158,44 @@ def test_a_truth_of_another_drive_costs_no_result(
     assert (tmp_path / "run/report.html").is_file()
     assert replay([*args, "--truth", str(tmp_path / "none.tum")]) == 2
     assert "none.tum cannot be read" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def apart(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a replay whose second half was driven in another home, where the robot was carried in a pause."""
+    folder = tmp_path_factory.mktemp("apart")
+    first, second = (simulate_drive(seed, SimulationConfig(minutes=0.5)) for seed in (3, 4))
+    scans, gap = 250, 60 * 10**9
+    stamps = np.concatenate([first.scan_stamps[:scans], first.scan_stamps[scans] + gap + second.scan_stamps[:scans]])
+    both = replace(
+        first,
+        scan_stamps=stamps,
+        ranges=np.concatenate([first.ranges[:scans], second.ranges[:scans]]),
+        T_odom_base_at_scans=np.concatenate([first.T_odom_base_at_scans[:scans], second.T_odom_base_at_scans[:scans]]),
+    )
+    write_carmen(both, folder / "apart.clf")
+    paused = 1e-9 * float(stamps[scans - 1])
+    events = [{"t": paused + 1.0, "call": "map/pause"}, {"t": paused + 2.0, "call": "map/resume_from_paused"}]
+    (folder / "events.json").write_text(json.dumps(events))
+    args = [str(folder / "apart.clf"), "--events", str(folder / "events.json"), "--quiet"]
+    assert replay([*args, "--out", str(folder / "run")]) == 0
+    return folder / "run"
+
+
+def test_a_part_that_is_not_tied_is_shown_beside_the_map(page: Page, apart: Path) -> None:
+    _open(page, apart / "report.html")
+    data = read_page_data(apart / "report.html")
+    parts, shifts = unpack(data["beside"]["part"]), unpack(data["beside"]["shift"])
+    drawn = unpack(data["nodes"]["poses"])[:, 0] + shifts[:, 0]
+    assert (shifts[parts == -1] == 0.0).all()
+    assert drawn[parts == 0].min() > drawn[parts == -1].max()
+    assert "not tied" in page.locator("#map .label").inner_text()
+    lines = page.evaluate("view.runs(view.data.samples.state, 4).flat().map(line => line.map(point => point[1]))")
+    assert all(max(line) - min(line) < 20.0 for line in lines), "no line from the one part to the other"
+    assert max(max(line) for line in lines) > drawn[parts == -1].max()
+    page.locator("#time").press("End")
+    loose = page.evaluate("view.robot.getLatLng().lng")
+    assert loose == pytest.approx(unpack(data["samples"]["pose"])[-1, 0] + shifts[-1, 0], abs=1e-3)
 
 
 def test_layers_are_switched_on_and_off(page: Page, run: Path) -> None:

@@ -34,7 +34,7 @@ int innermost(int low, int high) {
 class BranchAndBound {
  public:
   explicit BranchAndBound(const Search& search)
-      : search_(search), lattice_(search.lattice), pyramid_(search.table.bounds()) {
+      : search_(search), lattice_(search.lattice), pyramid_(search.table.bounds(search.on_lookups)) {
     levels_.push_back(search.table.view());
     const int side = 2 * std::max(lattice_.nx, lattice_.ny) + 1;
     for (int h = 1; h <= pyramid_->top() && (1 << (h - 1)) < side; ++h) levels_.push_back(pyramid_->level(h));

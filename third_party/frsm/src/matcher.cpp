@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -30,13 +31,6 @@ std::size_t independent_points(const Points& body, double cell) {
   return static_cast<std::size_t>(std::unique(cells.begin(), cells.end()) - cells.begin());
 }
 
-// What the table does not draw, as it is too far away, lies on nothing: it would only count as a miss.
-Points within(Points points, double radius) {
-  const auto is_far = [&](const Point& p) { return std::hypot(p.x, p.y) > radius; };
-  points.erase(std::remove_if(points.begin(), points.end(), is_far), points.end());
-  return points;
-}
-
 // The smallest number of steps that reach the half width.
 int steps(double half_width, double step) {
   return static_cast<int>(std::ceil(half_width / step - 1e-9));
@@ -50,9 +44,11 @@ BoundedResult find_best(const Search& search, const MatcherParams& params) {
   const long shifts = (2L * search.lattice.nx + 1) * (2L * search.lattice.ny + 1);
   const long candidates = shifts * (2L * search.lattice.nt + 1);
   if (params.max_tiles > 0 && (shifts > params.exhaustive_limit || candidates > params.max_candidates)) {
-    return search_two_level(search, params.max_tiles);
+    return search_two_level(search, static_cast<std::size_t>(params.max_tiles));
   }
-  return {shifts <= params.exhaustive_limit ? search_all(search) : search_bounded(search), false};
+  if (shifts <= params.exhaustive_limit) return {search_all(search), false};
+  if (shifts <= params.two_level_limit) return search_two_level(search, std::numeric_limits<std::size_t>::max());
+  return {search_bounded(search), false};
 }
 
 // Score of the best pose well apart from the best one, as a share of its score; without regard to the prior.
@@ -153,6 +149,7 @@ void MatcherParams::validate() const {
   check(ambiguity_floor > 0.0, "MatcherParams.ambiguity_floor", "must be above 0");
   check(max_candidates >= 1, "MatcherParams.max_candidates", "must be at least 1");
   check(max_tiles >= 0, "MatcherParams.max_tiles", "must not be negative");
+  check(two_level_limit >= 0, "MatcherParams.two_level_limit", "must not be negative");
   check(exhaustive_limit >= 1, "MatcherParams.exhaustive_limit", "must be at least 1");
 }
 

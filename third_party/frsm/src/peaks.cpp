@@ -34,7 +34,11 @@ class PeakFinder {
  public:
   PeakFinder(const Table& table, const Points& body, const Lattice& lattice, const PeakParams& params,
              const OnLookups& on_lookups)
-      : lattice_(lattice), params_(params), on_lookups_(on_lookups), pyramid_(table.bounds()), points_(body.size()) {
+      : lattice_(lattice),
+        params_(params),
+        on_lookups_(on_lookups),
+        pyramid_(table.bounds(on_lookups)),
+        points_(body.size()) {
     levels_.push_back(table.view());
     const int side = 2 * std::max(lattice_.nx, lattice_.ny) + 1;
     for (int h = 1; h <= pyramid_->top() && (1 << (h - 1)) < side; ++h) levels_.push_back(pyramid_->level(h));
@@ -61,7 +65,8 @@ class PeakFinder {
         taken_.push_back(square);
         floor_ = std::max(floor_, static_cast<std::uint32_t>(std::ceil(params_.ratio * taken_.front().sum)));
       } else {
-        if (++expansions > params_.max_expansions) return unfinished(found);
+        const bool is_hopeless = found.peaks.empty() && expansions >= params_.max_expansions_to_first;
+        if (is_hopeless || ++expansions > params_.max_expansions) return unfinished(found);
         push_quarters(square);
       }
     }

@@ -7,37 +7,51 @@
 namespace frsm {
 namespace {
 
-// The largest of two values `step` cells apart, along one axis; the rectangle grows by `step` at its low side.
-void max_along_x(const TableView& in, int step, std::vector<std::uint8_t>* out) {
-  const int width = in.width + step;
-  out->assign(static_cast<std::size_t>(width) * in.height, 0);
-  for (int row = 0; row < in.height; ++row) {
-    const std::uint8_t* source = in.data + row * in.stride;
-    std::uint8_t* target = out->data() + static_cast<std::ptrdiff_t>(row) * width;
-    std::copy_n(source, in.width, target);  // seen from `step` cells lower
-    for (int i = 0; i < in.width; ++i) target[i + step] = std::max(target[i + step], source[i]);
-  }
+// The larger of `a` and `b`, cell by cell. Were the arrays not known to be different ones, nothing could be done side
+// by side.
+void max_of(const std::uint8_t* __restrict a, const std::uint8_t* __restrict b, std::size_t count,
+            std::uint8_t* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = std::max(a[i], b[i]);
 }
 
-void max_along_y(const std::vector<std::uint8_t>& in, int width, int height, int step, std::vector<std::uint8_t>* out) {
-  const std::size_t shift = static_cast<std::size_t>(step) * width;
-  const std::size_t size = static_cast<std::size_t>(width) * height;
-  out->assign(size + shift, 0);
-  std::copy_n(in.begin(), size, out->begin());
-  for (std::size_t i = 0; i < size; ++i) (*out)[i + shift] = std::max((*out)[i + shift], in[i]);
+// Of a row, the larger of two values `step` cells apart; it grows by `step` at its low side.
+void max_along_x(const std::uint8_t* row, std::size_t width, std::size_t step, std::uint8_t* out) {
+  const std::size_t overlap = width > step ? width - step : 0;
+  std::fill(out, out + width + step, std::uint8_t{0});
+  std::copy_n(row, width, out);  // seen from `step` cells lower
+  max_of(row + step, row, overlap, out + step);
+  std::copy_n(row + overlap, width - overlap, out + step + overlap);
+}
+
+// The largest of four values `step` cells apart along both axes. Rows are kept until those `step` higher are there, so
+// that memory is read and written once.
+std::vector<std::uint8_t> max_of_four(const TableView& in, int step) {
+  const auto width = static_cast<std::size_t>(in.width), wider = width + static_cast<std::size_t>(step);
+  const int height = in.height + step;
+  std::vector<std::uint8_t> kept(wider * static_cast<std::size_t>(step), 0);  // row y at y % step
+  std::vector<std::uint8_t> row(wider, 0);
+  std::vector<std::uint8_t> out(wider * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    std::uint8_t* below = &kept[wider * static_cast<std::size_t>(y % step)];
+    if (y < in.height) {
+      max_along_x(in.data + y * in.stride, width, static_cast<std::size_t>(step), row.data());
+    } else {
+      std::fill(row.begin(), row.end(), std::uint8_t{0});
+    }
+    max_of(row.data(), below, wider, &out[wider * static_cast<std::size_t>(y)]);
+    std::copy(row.begin(), row.end(), below);
+  }
+  return out;
 }
 
 }  // namespace
 
 BoundPyramid::BoundPyramid(const TableView& table) {
   TableView below = table;
-  std::vector<std::uint8_t> rows;
   for (int h = 1; h < kLevels; ++h) {
     const int step = 1 << (h - 1);
-    Level level{{}, below.x0 - step, below.y0 - step, below.width + step, below.height + step};
-    max_along_x(below, step, &rows);
-    max_along_y(rows, level.width, below.height, step, &level.cells);
-    levels_.push_back(std::move(level));
+    levels_.push_back(
+        {max_of_four(below, step), below.x0 - step, below.y0 - step, below.width + step, below.height + step});
     below = this->level(h);
   }
 }

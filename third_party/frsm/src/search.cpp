@@ -60,7 +60,8 @@ std::optional<Candidate> search_all(const Search& search) {
     to_cells(search.table, search.body, lattice.at(it, 0, 0), &cells);
     slice.score(table, cells);
     if (search.on_lookups) {
-      search.on_lookups(cells.size() * static_cast<std::size_t>((2 * lattice.nx + 1) * (2 * lattice.ny + 1)));
+      const auto shifts = static_cast<std::uint64_t>((2 * lattice.nx + 1) * (2 * lattice.ny + 1));
+      search.on_lookups(cells.size() * shifts / kSideBySide);
     }
     for (int iy = -lattice.ny; iy <= lattice.ny; ++iy) {
       for (int ix = -lattice.nx; ix <= lattice.nx; ++ix) {

@@ -10,6 +10,9 @@
 
 namespace frsm {
 
+/// Cells that are read side by side, in vectors, cost so many times less than those read one by one.
+constexpr std::uint64_t kSideBySide = 16;
+
 /// The searched poses: the guess moved by whole cells and heading steps. Its lattice is that of the guess.
 struct Lattice {
   Pose guess;
@@ -89,7 +92,8 @@ struct BoundedResult {
 };
 
 /// The same candidate in bounded work: all tiles of 8 x 8 shifts are bounded, and no more than so many of them, the
-/// most promising first, are searched.
-BoundedResult search_two_level(const Search& search, int most_tiles);
+/// most promising first, are searched. For windows that are not so wide it costs less than branch and bound, whose
+/// bounds take long to build.
+BoundedResult search_two_level(const Search& search, std::size_t most_tiles);
 
 }  // namespace frsm

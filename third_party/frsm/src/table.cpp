@@ -20,6 +20,10 @@ namespace {
 constexpr int kMargin = 32;  // zero cells around what is drawn: windows need no clipping there
 constexpr int kChunk = 64;   // the rectangle grows in steps of this many cells
 constexpr std::size_t kMaxCells = std::size_t{1} << 28;
+// What building bounds costs, as OnLookups counts: of all levels, per cell of the table,
+constexpr std::uint64_t kLookupsPerBound = 3;
+// and cells whose blocks take as long as one.
+constexpr std::uint64_t kCellsPerBlockLookup = 5;
 constexpr int kKernelEntries = 8192;  // the whole kernel stays in the first-level cache
 
 int floor_to_chunk(int i) {
@@ -87,6 +91,15 @@ void Table::draw(const Points& world, const std::vector<Contour>& contours, cons
   }
 }
 
+void Table::reserve(const Point& low, const Point& high) {
+  check(std::isfinite(low.x + low.y + high.x + high.y) && low.x <= high.x && low.y <= high.y, "the area", "is none");
+  const auto cell = [this](double coordinate) { return coordinate * inverse_cell_; };
+  cover(static_cast<int>(std::floor(cell(low.x))) - kernel_.radius,
+        static_cast<int>(std::floor(cell(low.y))) - kernel_.radius,
+        static_cast<int>(std::ceil(cell(high.x))) + kernel_.radius,
+        static_cast<int>(std::ceil(cell(high.y))) + kernel_.radius);
+}
+
 int Table::index(double coordinate) const {
   return static_cast<int>(std::floor(coordinate * inverse_cell_ + 0.5));
 }
@@ -144,18 +157,20 @@ TableView Table::view() const {
   return {cells_.data(), x0_, y0_, width_, height_, width_};
 }
 
-std::shared_ptr<const BoundPyramid> Table::bounds() const {
+std::shared_ptr<const BoundPyramid> Table::bounds(const OnLookups& on_lookups) const {
   auto bounds = std::atomic_load(&bounds_);
   if (!bounds) {  // two threads may both build it: they build the same
+    if (on_lookups) on_lookups(kLookupsPerBound * cells_.size());
     bounds = std::make_shared<const BoundPyramid>(view());
     std::atomic_store(&bounds_, bounds);
   }
   return bounds;
 }
 
-std::shared_ptr<const BlockMaxima> Table::blocks() const {
+std::shared_ptr<const BlockMaxima> Table::blocks(const OnLookups& on_lookups) const {
   auto blocks = std::atomic_load(&blocks_);
   if (!blocks) {
+    if (on_lookups) on_lookups(cells_.size() / kCellsPerBlockLookup);
     blocks = std::make_shared<const BlockMaxima>(view());
     std::atomic_store(&blocks_, blocks);
   }

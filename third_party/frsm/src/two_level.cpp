@@ -30,24 +30,28 @@ class TwoLevelSearch {
  public:
   explicit TwoLevelSearch(const Search& search) : search_(search), lattice_(search.lattice) {}
 
-  BoundedResult run(int most_tiles) {
+  BoundedResult run(std::size_t most_tiles) {
     score_tiles();
-    const auto better = [](const Tile& a, const Tile& b) {
-      return std::tie(b.bound, a.it, a.y, a.x) < std::tie(a.bound, b.it, b.y, b.x);
+    const auto is_worse = [](const Tile& a, const Tile& b) {
+      return std::tie(a.bound, b.it, b.y, b.x) < std::tie(b.bound, a.it, a.y, a.x);
     };
-    const std::size_t count = std::min(tiles_.size(), static_cast<std::size_t>(most_tiles));
-    std::partial_sort(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(count), tiles_.end(), better);
-    BoundedResult result;
-    std::size_t visited = 0;
-    while (visited < count && !(best_ && tiles_[visited].bound < best_->value)) visit(tiles_[visited++]);
-    result.best = best_;
-    result.is_cut_short = visited == count && count < tiles_.size() && !(best_ && best_left(count) < best_->value);
-    return result;
+    std::make_heap(tiles_.begin(), tiles_.end(), is_worse);
+    const auto may_have_better = [this] { return !tiles_.empty() && !(best_ && tiles_.front().bound < best_->value); };
+    for (std::size_t visited = 0; visited < most_tiles && may_have_better(); ++visited) {
+      visit(tiles_.front());
+      std::pop_heap(tiles_.begin(), tiles_.end(), is_worse);
+      tiles_.pop_back();
+    }
+    return {best_, may_have_better()};
   }
 
  private:
+  void tell(std::uint64_t side_by_side) const {
+    if (search_.on_lookups) search_.on_lookups(side_by_side / kSideBySide);
+  }
+
   void score_tiles() {
-    const std::shared_ptr<const BlockMaxima> blocks = search_.table.blocks();
+    const std::shared_ptr<const BlockMaxima> blocks = search_.table.blocks(search_.on_lookups);
     const TableView view = blocks->view();
     const int nx = lattice_.nx / kSide + 1;
     const int ny = lattice_.ny / kSide + 1;
@@ -57,6 +61,7 @@ class TwoLevelSearch {
       to_cells(search_.table, search_.body, lattice_.at(it, 0, 0), &cells);
       for (Cell& cell : cells) cell = {BlockMaxima::of(cell.x), BlockMaxima::of(cell.y)};
       slice.score(view, cells);
+      tell(cells.size() * static_cast<std::uint64_t>((2 * nx + 1) * (2 * ny + 1)));
       for (int y = -ny; y * kSide <= lattice_.ny; ++y) {
         for (int x = -nx; x * kSide <= lattice_.nx; ++x) {
           const std::uint32_t sum = slice.sum(x, y);
@@ -83,6 +88,7 @@ class TwoLevelSearch {
     to_cells(search_.table, search_.body, lattice_.at(tile.it, 0, 0), &cells_);
     for (Cell& cell : cells_) cell = {cell.x + middle_x, cell.y + middle_y};
     slice_.score(search_.table.view(), cells_);
+    tell(cells_.size() * kSide * kSide);
     for (int iy = std::max(-kHalf, -lattice_.ny - middle_y); iy < std::min(kHalf, lattice_.ny - middle_y + 1); ++iy) {
       for (int ix = std::max(-kHalf, -lattice_.nx - middle_x); ix < std::min(kHalf, lattice_.nx - middle_x + 1); ++ix) {
         consider({tile.it, middle_x + ix, middle_y + iy, slice_.sum(ix, iy), 0.0});
@@ -98,13 +104,6 @@ class TwoLevelSearch {
     if (!best_ || search_.better(candidate, *best_)) best_ = candidate;
   }
 
-  // The best bound of the tiles that were not visited.
-  double best_left(std::size_t first) const {
-    double bound = tiles_[first].bound;
-    for (std::size_t i = first; i < tiles_.size(); ++i) bound = std::max(bound, tiles_[i].bound);
-    return bound;
-  }
-
   const Search& search_;
   const Lattice& lattice_;
   std::vector<Tile> tiles_;
@@ -115,7 +114,7 @@ class TwoLevelSearch {
 
 }  // namespace
 
-BoundedResult search_two_level(const Search& search, int most_tiles) {
+BoundedResult search_two_level(const Search& search, std::size_t most_tiles) {
   return TwoLevelSearch(search).run(most_tiles);
 }
 

@@ -74,4 +74,10 @@ Points drop_invalid(const Points& points) {
   return valid;
 }
 
+Points within(Points points, double radius) {
+  const auto is_far = [&](const Point& p) { return std::hypot(p.x, p.y) > radius; };
+  points.erase(std::remove_if(points.begin(), points.end(), is_far), points.end());
+  return points;
+}
+
 }  // namespace frsm

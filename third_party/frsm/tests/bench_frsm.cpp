@@ -53,6 +53,7 @@ void bench_scan_size(int beams) {
   for (const bool bounded : {false, true}) {
     frsm::MatcherParams params;
     params.exhaustive_limit = bounded ? 1 : 1 << 30;
+    params.two_level_limit = 0;
     const frsm::Matcher forced(params);
     report(bounded ? "match, window 1 m, 0.3 rad, branch and bound" : "match, window 1 m, 0.3 rad, exhaustive", 20,
            [&](int) {

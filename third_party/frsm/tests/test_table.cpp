@@ -41,6 +41,35 @@ void draw_scan(Table* table, const Pose& pose, unsigned seed) {
   table->draw(transform(pose, body), extract_contours(body, {}), pose);
 }
 
+TEST(Table, RoomThatWasMadeChangesNothing) {
+  const Points world{{0.0, 0.0}, {1.0, 0.3}, {4.0, -2.5}};
+  Table drawn(with_cell(0.02)), reserved(with_cell(0.02));
+  reserved.reserve({0.0, -2.5}, {4.0, 0.3});
+  EXPECT_TRUE(reserved.empty());
+  for (const Point& point : world) {
+    drawn.draw({point}, {{0}}, {});
+    reserved.draw({point}, {{0}}, {});
+  }
+  EXPECT_EQ(drawn.view().width, reserved.view().width);
+  EXPECT_EQ(drawn.view().height, reserved.view().height);
+  EXPECT_EQ(bytes(drawn), bytes(reserved));
+  EXPECT_THROW(reserved.reserve({0.0, 0.0}, {1e4, 1e4}), std::length_error);
+  EXPECT_THROW(reserved.reserve({1.0, 0.0}, {0.0, 0.0}), std::invalid_argument);
+}
+
+TEST(Table, TellsWhatBoundsCostOnceTheyAreBuilt) {
+  const Table table = dot(with_cell(0.02));
+  std::uint64_t told = 0;
+  const OnLookups on_lookups = [&told](std::uint64_t lookups) { told += lookups; };
+  table.bounds(on_lookups);
+  const std::uint64_t once = told;
+  EXPECT_GT(once, 0u);
+  table.bounds(on_lookups);
+  EXPECT_EQ(told, once);
+  table.blocks(on_lookups);
+  EXPECT_GT(told, once);
+}
+
 TEST(Kernel, HasTheDocumentedValues) {
   const std::vector<std::pair<double, std::vector<int>>> expected = {{0.01, {255, 220, 190, 164, 141, 122, 105, 90}},
                                                                      {0.02, {255, 190, 141, 105, 78, 58, 43, 32, 0}},

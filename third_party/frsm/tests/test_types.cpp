@@ -25,6 +25,13 @@ TEST(Pose, WrapsToTheHalfOpenInterval) {
   }
 }
 
+TEST(Points, WithinKeepsTheOrder) {
+  const Points near = within({{3.0, 4.0}, {0.0, 1.0}, {5.0, 0.1}, {-2.0, 0.0}}, 5.0);
+  ASSERT_EQ(near.size(), 3u);
+  EXPECT_EQ(near[0].x, 3.0);
+  EXPECT_EQ(near[2].x, -2.0);
+}
+
 TEST(Pose, BetweenUndoesComposition) {
   const Pose a{1.0, -2.0, 3.0};
   const Pose b{0.3, 0.4, -2.0};

@@ -16,6 +16,17 @@ class WorkMeter {
   virtual void charge(std::uint64_t units) = 0;
 };
 
+/// Counts work that has a limit. Whoever does it looks whether any is left before it begins with more.
+class WorkBudget : public WorkMeter {
+ public:
+  explicit WorkBudget(double units) : units_(units) {}
+  void charge(std::uint64_t units) override { units_ -= static_cast<double>(units); }
+  bool is_spent() const { return units_ <= 0.0; }
+
+ private:
+  double units_;  // left
+};
+
 /// Charges `units` if there is somebody who counts.
 inline void charge(WorkMeter* meter, double units) {
   if (meter != nullptr) meter->charge(static_cast<std::uint64_t>(units) + 1);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "oort/graph/graph.hpp"
 #include "oort/map/renumbering.hpp"
 
 namespace oort {
@@ -26,18 +25,28 @@ class TrackingMonitor {
   /// where they were put is little more than a guess. If older ones are still untied, all from those on are.
   void add_untied(std::uint64_t first_node, bool is_guess);
 
-  /// Looks whether a closure that is on ties the newest segment, which begins with the node `segment_begin`, to the
-  /// map.
-  void look_for_tie(const Graph& graph, std::uint64_t segment_begin);
+  bool is_untied() const { return is_untied_; }
 
-  /// The map's older nodes were reduced.
-  void renumber(const Renumbering& nodes) { untied_begin_ = nodes.of(untied_begin_); }
+  /// Looks whether closures that are on tie the newest node to the map, in one step or several. `part_begin`: the first
+  /// node of the part of the map that they hold together with it.
+  void look_for_tie(std::uint64_t part_begin) { is_untied_ = is_untied_ && part_begin >= untied_begin_; }
+
+  /// Whether the newest nodes are where the map has them, as far as can be told: not if what they see contradicts it;
+  /// if nothing speaks against it, untied ones are as well.
+  void trust(bool trusted);
+
+  /// The map's older nodes were reduced. Whether the newest ones contradict it is to be seen anew.
+  void renumber(const Renumbering& nodes) {
+    untied_begin_ = nodes.of(untied_begin_);
+    is_contradicted_ = false;
+  }
 
   /// Takes the next scan. `missed`: the scan matcher was asked and could not place it.
   TrackingState update(bool missed);
 
  private:
   bool is_untied_ = false;
+  bool is_contradicted_ = false;
   bool is_guess_ = false;
   std::uint64_t untied_begin_ = 0;
   int missed_in_a_row_ = 0;

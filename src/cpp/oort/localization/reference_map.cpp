@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/localization/reference_map.hpp"
 
+#include <Eigen/Geometry>
 #include <frsm/contours.hpp>
 #include <string>
 
@@ -63,6 +64,7 @@ ReferenceMap::ReferenceMap(const Map& map, const std::vector<std::uint64_t>& nod
       fine_(fine_params(parameters, coarser(space_))),
       coarse_(coarse_params(parameters, coarser(space_))),
       hit_value_(matcher_params(parameters.incremental_graph_builder.frsm_matcher).hit_value) {
+  reserve(map, nodes);
   for (const std::uint64_t node : nodes) {
     const frsm::Pose pose = to_frsm(map.graph.nodes[node].pose);
     const frsm::Points points = returns_of(map.clouds[node]);
@@ -73,8 +75,20 @@ ReferenceMap::ReferenceMap(const Map& map, const std::vector<std::uint64_t>& nod
   }
 }
 
+/// Drawing would else copy the tables again and again as they grow.
+void ReferenceMap::reserve(const Map& map, const std::vector<std::uint64_t>& nodes) {
+  Eigen::AlignedBox2d box;
+  for (const std::uint64_t node : nodes) box.extend(map.graph.nodes[node].pose.translation());
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(fine_.params().radius);
+  const GridLimits& limits = space_.limits();
+  const Eigen::Vector2d low(limits.origin_x, limits.origin_y);
+  const Eigen::Vector2d high = low + limits.resolution * Eigen::Vector2d(limits.width, limits.height);
+  const Eigen::Vector2d from = (box.min() - reach).cwiseMax(low), to = (box.max() + reach).cwiseMin(high);
+  for (frsm::Table* table : {&fine_, &coarse_}) table->reserve({from.x(), from.y()}, {to.x(), to.y()});
+}
+
 void ReferenceMap::weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Support& support) const {
-  const frsm::Points points = returns_of(cloud);
+  const frsm::Points points = frsm::within(returns_of(cloud), fine_.params().radius);
   const auto is_inlier = [&](const Eigen::Vector2d& p) {
     return fine_.value(fine_.index(p.x()), fine_.index(p.y())) >= hit_value_;
   };

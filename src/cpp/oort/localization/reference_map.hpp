@@ -39,10 +39,13 @@ class ReferenceMap {
   const frsm::Table& coarse() const { return coarse_; }  ///< for searching all of it
   const KnownSpace& space() const { return space_; }
 
-  /// How well a scan fits that was taken at a pose, added to `support`.
+  /// How well a scan fits that was taken at a pose, added to `support`. Returns that are farther away than the map
+  /// draws any tell nothing.
   void weigh(const PointCloud& cloud, const Pose2& T_map_sensor, Support& support) const;
 
  private:
+  void reserve(const Map& map, const std::vector<std::uint64_t>& nodes);
+
   KnownSpace space_;
   frsm::Table fine_;
   frsm::Table coarse_;

@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <frsm/peaks.hpp>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
@@ -45,11 +44,12 @@ frsm::Points at_most(std::size_t count, const frsm::Points& points) {
   return kept;
 }
 
-// The returns of all scans in the frame of the newest.
-frsm::Points join(const std::vector<PlacedScan>& scans) {
+// The returns of all scans, as far as a map draws any, in the frame of the newest.
+frsm::Points join(const std::vector<PlacedScan>& scans, double reach) {
   frsm::Points points;
   for (const PlacedScan& scan : scans) {
-    append_transformed(returns_of(scan.cloud), between(scans.back().T_odom_sensor, scan.T_odom_sensor), points);
+    append_transformed(frsm::within(returns_of(scan.cloud), reach),
+                       between(scans.back().T_odom_sensor, scan.T_odom_sensor), points);
   }
   return frsm::drop_invalid(points);
 }
@@ -60,9 +60,9 @@ double reach_of(const frsm::Points& points) {
   return reach;
 }
 
-// Turning by a step moves the farthest point by a cell.
-double theta_step(const frsm::Points& points, double cell) {
-  return std::clamp(cell / std::max(reach_of(points), cell), LocalizationTuning::kMinThetaStep,
+// Turning by a step moves the farthest point by so much [m].
+double theta_step(const frsm::Points& points, double moved) {
+  return std::clamp(moved / std::max(reach_of(points), moved), LocalizationTuning::kMinThetaStep,
                     LocalizationTuning::kMaxThetaStep);
 }
 
@@ -87,13 +87,14 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans, const Sea
     if (!is_finite(scan.T_odom_sensor)) throw InputError("relocalisation: a scan's odometry pose is not finite");
   }
   Relocalization result;
-  const frsm::Points points = one_per_cell(join(scans), LocalizationTuning::kMatchVoxel);
+  const frsm::Points points = one_per_cell(join(scans, map_->fine().params().radius), LocalizationTuning::kMatchVoxel);
   if (points.size() < static_cast<std::size_t>(parameters_.min_points)) {
     result.rejection = Rejection::kSearchTooFewPoints;
     return result;
   }
-  bool complete = true;
-  std::vector<Hypothesis> found = hypotheses(scans, points, effort, on_lookups, complete);
+  frsm::Peaks peaks;
+  std::vector<Hypothesis> found = hypotheses(scans, points, effort, on_lookups, peaks);
+  result.stands_out = !peaks.peaks.empty();
   std::stable_sort(found.begin(), found.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.support.value() > b.support.value(); });
   if (!found.empty()) {
@@ -103,29 +104,28 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans, const Sea
     });
     if (second != found.end()) result.second = *second;
   }
-  result.rejection = judge(result, complete);
+  result.rejection = judge(result, effort, peaks.complete);
   return result;
 }
 
 std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
                                                 const SearchEffort& effort, const frsm::OnLookups& on_lookups,
-                                                bool& complete) const {
+                                                frsm::Peaks& peaks) const {
   const GridLimits& limits = map_->space().limits();
   const double half_x = 0.5 * limits.width * limits.resolution;
   const double half_y = 0.5 * limits.height * limits.resolution;
   frsm::PeakParams search;
-  search.floor = std::max(min_score_, LocalizationTuning::kMinScore);
+  search.floor = std::max({min_score_, LocalizationTuning::kMinScore, effort.floor});
   search.ratio = effort.ratio;
   search.apart_xy = search.apart_theta = LocalizationTuning::kPeakSpacing;
   search.max_expansions = effort.max_expansions;
+  search.max_expansions_to_first = effort.max_expansions_to_first;
   search.max_peaks = effort.max_peaks;
   const frsm::Points sparse = at_most(effort.max_points, one_per_cell(points, LocalizationTuning::kSearchVoxel));
-  search.theta_step = theta_step(sparse, map_->coarse().params().cell);
-  const frsm::Peaks peaks =
-      frsm::find_peaks(map_->coarse(), sparse, {limits.origin_x + half_x, limits.origin_y + half_y, 0.0},
-                       {half_x, half_y, M_PI}, search, on_lookups);
-  complete = peaks.complete;
-  if (!complete && !effort.weighs_incomplete) return {};
+  search.theta_step = theta_step(sparse, effort.turn_cells * map_->coarse().params().cell);
+  peaks = frsm::find_peaks(map_->coarse(), sparse, {limits.origin_x + half_x, limits.origin_y + half_y, 0.0},
+                           {half_x, half_y, M_PI}, search, on_lookups);
+  if (!peaks.complete && !effort.weighs_incomplete) return {};
   const double reach = std::max(LocalizationTuning::kFineReach, 2.0 * map_->coarse().params().cell);
   std::vector<Hypothesis> found;
   for (const frsm::Peak& peak : peaks.peaks) {
@@ -142,11 +142,11 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   return found;
 }
 
-Rejection Relocalizer::judge(const Relocalization& result, bool complete) const {
+Rejection Relocalizer::judge(const Relocalization& result, const SearchEffort& effort, bool complete) const {
   if (!result.best) return complete ? Rejection::kNoMatch : Rejection::kAmbiguous;
   const double best = result.best->support.value();
   if (!complete) return Rejection::kAmbiguous;
-  if (best < parameters_.min_support) return Rejection::kSearchLowSupport;
+  if (best < std::min(parameters_.min_support, effort.min_support)) return Rejection::kSearchLowSupport;
   if (result.second && best - result.second->support.value() < parameters_.min_lead) {
     return Rejection::kAmbiguous;
   }

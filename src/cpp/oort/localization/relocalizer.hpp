@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <frsm/peaks.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,16 +35,21 @@ struct Relocalization {
   Rejection rejection = Rejection::kNoMatch;
   std::optional<Hypothesis> best;    ///< the answer if it was found; what was rejected otherwise
   std::optional<Hypothesis> second;  ///< the next place apart from it, by 0.3 m or 0.3 rad
+  bool stands_out = true;            ///< whether the search came upon any place that scores enough
 
   bool found() const { return rejection == Rejection::kNone; }
 };
 
 /// What a search may cost at most.
 struct SearchEffort {
+  double floor = 0.0;                   ///< places of a lower score are not looked at, whatever the parameters say
+  double turn_cells = 1.0;              ///< by which a step of the heading moves the farthest point, at most
   double ratio = 0.75;                  ///< places of less than this share of the best score are no rivals
   std::size_t max_points = 100000;      ///< of the scans, that are looked for everywhere
   std::size_t max_expansions = 150000;  ///< see frsm::PeakParams
-  std::size_t max_peaks = 32;           ///< the same
+  std::size_t max_expansions_to_first = 150000;  ///< the same
+  std::size_t max_peaks = 32;                    ///< the same
+  double min_support = 1.0;  ///< answers of less support than the parameters ask for are found, too, from here on
   /// Whether places are weighed although the search ended early: the answer is ambiguous anyway.
   bool weighs_incomplete = true;
 };
@@ -63,8 +69,8 @@ class Relocalizer {
  private:
   std::vector<Hypothesis> hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
                                      const SearchEffort& effort, const frsm::OnLookups& on_lookups,
-                                     bool& complete) const;
-  Rejection judge(const Relocalization& result, bool complete) const;
+                                     frsm::Peaks& peaks) const;
+  Rejection judge(const Relocalization& result, const SearchEffort& effort, bool complete) const;
 
   std::shared_ptr<const ReferenceMap> map_;
   RelocalizerParameters parameters_;

@@ -139,10 +139,8 @@ std::optional<Closure> DockGraphBuilder::match(const Map& map, const TrajectoryS
       parameters_.closure_firmness > 1.0 ? LoopClosureTuning::kReachSigmas : 1.0;  // 1 is what is documented
   const frsm::Prior prior{to_frsm(dock.T_node_dock), (limits / sigmas).cwiseAbs2().asDiagonal()};
   const frsm::Points points = points_of(map, query_nodes);
-  const auto drawn = static_cast<double>(reference.size() * map.clouds[dock.node].points.size());
-  charge(meter, LoopClosureTuning::kFrsmWorkPerDrawn * drawn + LoopClosureTuning::kFrsmWorkPerPoint *
-                                                                   static_cast<double>(points.size()) *
-                                                                   LoopClosureTuning::kFrsmPasses);
+  charge(meter, static_cast<double>(reference.size()) * work_of_drawing(map.clouds[dock.node], table_.radius) +
+                    LoopClosureTuning::kFrsmWorkPerPoint * static_cast<double>(points.size()));
   const auto submap = draw_submap(map, reference, table_, contours_);
   const auto on_lookups = [meter](std::uint64_t lookups) {
     charge(meter, LoopClosureTuning::kFrsmWorkPerLookup * static_cast<double>(lookups));

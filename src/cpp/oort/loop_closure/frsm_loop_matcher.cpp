@@ -52,9 +52,11 @@ bool FrsmLoopMatcher::is_small(const TrajectorySegments& segments, std::uint64_t
 
 bool FrsmLoopMatcher::draw(const Map& map, const TrajectorySegments& segments, std::uint64_t candidate,
                            WorkMeter* meter) {
-  charge(meter, LoopClosureTuning::kFrsmWorkPerDrawn *
-                    static_cast<double>(LoopClosureTuning::kScansPerPiece * map.clouds[candidate].points.size()));
-  return !is_small(segments, candidate) && submaps_.draw(map, segments, candidate, LoopClosureTuning::kScansPerPiece);
+  if (is_small(segments, candidate)) return false;
+  const std::size_t scans = std::min(submaps_.undrawn(segments, candidate), LoopClosureTuning::kScansPerPiece);
+  if (scans == 0) return false;
+  charge(meter, static_cast<double>(scans) * work_of_drawing(map.clouds[candidate], table_.radius));
+  return submaps_.draw(map, segments, candidate, scans);
 }
 
 LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const TrajectorySegments& segments, std::uint64_t query,
@@ -70,8 +72,7 @@ LoopMatcher::Found FrsmLoopMatcher::find(const Map& map, const TrajectorySegment
   const std::shared_ptr<const frsm::Table> submap = submaps_.get(map, segments, candidate);
   frsm::OnLookups on_lookups;
   if (meter != nullptr) {
-    charge(meter,
-           LoopClosureTuning::kFrsmWorkPerPoint * static_cast<double>(points.size()) * LoopClosureTuning::kFrsmPasses);
+    charge(meter, LoopClosureTuning::kFrsmWorkPerPoint * static_cast<double>(points.size()));
     on_lookups = [meter](std::uint64_t lookups) {
       charge(meter, LoopClosureTuning::kFrsmWorkPerLookup * static_cast<double>(lookups));
     };

@@ -37,6 +37,11 @@ class SubmapCache {
     return entries_.front().submap;
   }
 
+  /// The scans of a node's submap that are not drawn yet.
+  std::size_t undrawn(const TrajectorySegments& segments, std::uint64_t node) {
+    return segments.neighborhood(node, neighborhood_size_).size() - latest(node).drawn;
+  }
+
   /// Draws at most so many more scans of a node's submap. False if it was drawn already.
   bool draw(const Map& map, const TrajectorySegments& segments, std::uint64_t node, std::size_t scans) {
     std::vector<std::uint64_t> nodes = segments.neighborhood(node, neighborhood_size_);

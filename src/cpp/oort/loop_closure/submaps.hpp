@@ -20,6 +20,9 @@ namespace oort {
 std::shared_ptr<const frsm::Table> draw_submap(const Map& map, const std::vector<PlacedNode>& nodes,
                                                const frsm::TableParams& table, const frsm::ContourParams& contours);
 
+/// What it costs to draw a scan into a table that draws as far as `reach` [m] (geometry/work_meter.hpp).
+double work_of_drawing(const PointCloud& cloud, double reach);
+
 /// The returns of some nodes of one segment, in the frame of `origin`, a node of that segment; those farther than
 /// `reach` [m] from where they were seen are left out.
 frsm::Points gather_points(const Map& map, const TrajectorySegments& segments, std::uint64_t origin,

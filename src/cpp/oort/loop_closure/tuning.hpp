@@ -79,16 +79,17 @@ struct LoopClosureTuning {
   static constexpr std::size_t kScansPerPiece = 8;
 
   // Work units (geometry/work_meter.hpp).
-  static constexpr double kWorkPerNode = 0.35;         ///< of the map: candidates
-  static constexpr double kWorkPerEdge = 0.12;         ///< of the map: candidates
-  static constexpr double kWorkPerNormal = 0.4;        ///< per return: normal consistency
-  static constexpr double kFrsmWorkPerDrawn = 0.08;    ///< per return of a submap
-  static constexpr double kFrsmWorkPerPoint = 0.05;    ///< and pass of the fine search
-  static constexpr double kFrsmPasses = 20.0;          ///< of the fine search
-  static constexpr double kFrsmWorkPerLookup = 0.003;  ///< of one cell of a table
-  static constexpr double kGridWorkPerDrawn = 2.0;     ///< per return of a submap
-  static constexpr double kGridWorkPerMatch = 5000.0;  ///< refinement by Ceres
-  static constexpr double kGridWorkPerTurn = 50.0;     ///< search: per point and radian of the window
+  static constexpr double kWorkPerNode = 0.25;          ///< of the map: candidates
+  static constexpr double kWorkPerEdge = 0.085;         ///< of the map: candidates
+  static constexpr double kWorkPerNormal = 0.4;         ///< per return: normal consistency
+  static constexpr double kFrsmWorkPerDrawn = 0.5;      ///< per return of a submap,
+  static constexpr double kFrsmWorkPerMetre = 6.0;      ///< and per metre between returns that lie on one line, which
+  static constexpr double kLongestLine = 0.5;           ///< [m] are no farther apart
+  static constexpr double kFrsmWorkPerPoint = 0.5;      ///< of a match, beside the search
+  static constexpr double kFrsmWorkPerLookup = 0.0015;  ///< of one cell of a table (frsm::OnLookups)
+  static constexpr double kGridWorkPerDrawn = 2.0;      ///< per return of a submap
+  static constexpr double kGridWorkPerMatch = 5000.0;   ///< refinement by Ceres
+  static constexpr double kGridWorkPerTurn = 50.0;      ///< search: per point and radian of the window
 };
 
 }  // namespace oort

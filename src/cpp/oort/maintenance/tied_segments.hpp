@@ -13,4 +13,7 @@ namespace oort {
 /// are on. Where parts lie to one another only odometry or somebody's word tells.
 std::vector<std::uint64_t> tied_parts(const Graph& graph, const TrajectorySegments& segments);
 
+/// The same of what closures alone hold together: odometry may be wrong wherever a new local map was begun.
+std::vector<std::uint64_t> closed_parts(const Graph& graph, const TrajectorySegments& segments);
+
 }  // namespace oort

@@ -27,6 +27,13 @@ void TrajectorySegments::add(bool begins_segment, bool matched, const Pose2& T_l
   local_poses_.push_back(T_local_sensor);
 }
 
+void TrajectorySegments::split(std::uint64_t node) {
+  const std::uint64_t end = segment_end(node);
+  std::fill(first_.begin() + static_cast<std::ptrdiff_t>(node), first_.begin() + static_cast<std::ptrdiff_t>(end),
+            node);
+  matched_[node] = true;
+}
+
 TrajectorySegments TrajectorySegments::of_map(const Map& map) {
   const std::size_t size = map.graph.nodes.size();
   std::vector<const Edge*> step(size, nullptr);   // from the node before

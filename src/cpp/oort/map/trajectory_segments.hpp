@@ -19,6 +19,9 @@ class TrajectorySegments {
   /// scan matcher saw it there.
   void add(bool begins_segment, bool matched, const Pose2& T_local_sensor);
 
+  /// From this node on its segment is another one.
+  void split(std::uint64_t node);
+
   /// Recovers the segments of a map from its edges and incremental results.
   static TrajectorySegments of_map(const Map& map);
 

@@ -43,6 +43,7 @@ void GlobalSlam::begin_session() {
   former_.reset();
   former_stays_ = former_gave_way_ = false;
   segment_search_ = SegmentSearch(parameters_);
+  watch_.forget();
   reduction_ = {std::max(MapperTuning::kFirstReduction, MapperTuning::kReductionGrowth * map_.node_count()), false};
 }
 
@@ -55,7 +56,8 @@ void GlobalSlam::begin_schedule() {
 
 void GlobalSlam::add(const NodeAddition& node) {
   not_looked_from_.push_back(map_.node_count());
-  if (node.begins_segment && !node.edges.empty()) segment_search_.begin(map_.node_count(), is_unknown(node));
+  if (node.begins_segment && !node.edges.empty())
+    segment_search_.begin(map_.node_count(), is_unknown(node) ? Doubt::kAll : Doubt::kOdometry);
   map_.add(node);
 }
 
@@ -80,6 +82,7 @@ Correction GlobalSlam::work(WorkMeter& meter) {
   if (!not_looked_from_.empty()) {
     const WorkClock clock(work_seconds_.candidates);
     loops_.look(map(), map_.segments(), not_looked_from_.front(), &meter);
+    watch(not_looked_from_.front(), meter);
     not_looked_from_.pop_front();
     return nothing();
   }
@@ -191,18 +194,18 @@ void GlobalSlam::work_off(Correction& all) {
 
 /// Once more with everything, as long as what is found helps to find more.
 void GlobalSlam::tie_loose_parts(Correction& all) {
-  int looks_left = MapperTuning::kMaxLooksInAll;
+  WorkBudget budget(MapperTuning::kFinalSearch);
   for (int round = 0; round < MapperTuning::kMaxRounds; ++round) {
     std::vector<SegmentFinding> findings;
     {
       const WorkClock clock(work_seconds_.matching);
-      findings = segment_search_.look_for_all(map(), map_.segments(), looks_left);
+      findings = segment_search_.look_for_all(map(), map_.segments(), budget);
     }
     bool tied = false;
     for (const SegmentFinding& finding : findings) {
       if (parameters_.frozen_map && finding.nodes.front().begin < session_begin_) continue;
       const Correction some = placed(finding);
-      all.elsewhere.insert(all.elsewhere.end(), some.elsewhere.begin(), some.elsewhere.end());
+      all.segments.insert(all.segments.end(), some.segments.begin(), some.segments.end());
       all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
       tied = tied || !some.closures.empty();
     }
@@ -233,6 +236,14 @@ std::vector<Closure> GlobalSlam::trusted(std::vector<Closure> closures) const {
   return closures;
 }
 
+void GlobalSlam::watch(std::uint64_t node, WorkMeter& meter) {
+  watch_.look(map(), node, &meter);
+  const std::optional<std::uint64_t> first = watch_.first_suspect();
+  if (!first) return;
+  segment_search_.suspect(*first, map_.segments());
+  watch_.forget();
+}
+
 Correction GlobalSlam::placed(const SegmentFinding& finding) {
   if (finding.is_nothing()) return nothing();
   if (finding.withdrawn) {
@@ -240,10 +251,17 @@ Correction GlobalSlam::placed(const SegmentFinding& finding) {
     is_on_.clear();
     count_switches();
   }
-  if (finding.disproved) map_.loosen(finding.nodes);
+  if (finding.begins_segment) {
+    map_.begin_segment(finding.nodes.front().begin);
+    forget_submaps();
+  }
+  if (finding.disproved) {
+    map_.loosen(finding.nodes);
+    watch_.forget();
+  }
   Correction correction = found(finding.closures);
+  if (finding.disproved || finding.trusted) correction.segments = {finding};
   if (!finding.disproved) return correction;
-  correction.elsewhere = {finding};
   if (finding.closures.empty()) return correction;
   // Solving begins where the closures say: from elsewhere it would rather switch them off.
   for (Node& node : map_.edit().graph.nodes) {

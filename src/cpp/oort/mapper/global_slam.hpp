@@ -15,6 +15,7 @@
 #include "oort/maintenance/prune.hpp"
 #include "oort/mapper/former_map.hpp"
 #include "oort/mapper/growing_map.hpp"
+#include "oort/mapper/place_watch.hpp"
 #include "oort/mapper/segment_search.hpp"
 #include "oort/mapper/solve_schedule.hpp"
 #include "oort/mapper/statistics.hpp"
@@ -33,8 +34,8 @@ struct Correction {
   /// First of all: what the nodes known to global SLAM were reduced to, if they were.
   std::shared_ptr<const Pruned> reduced;
   std::vector<bool> docked;  ///< of requests for the dock, oldest first: whether a closure was found
-  /// Untied nodes that are elsewhere, before the closures that may tie them.
-  std::vector<SegmentFinding> elsewhere;
+  /// What was found of untied nodes, before the closures that may tie them.
+  std::vector<SegmentFinding> segments;
 };
 
 /// Global SLAM: looks for loops, matches and confirms them, solves the graph. It works on a map of its own, to which
@@ -89,6 +90,7 @@ class GlobalSlam {
   Correction nothing() const;
   Correction found(const std::vector<Closure>& closures);
   std::vector<Closure> trusted(std::vector<Closure> closures) const;
+  void watch(std::uint64_t node, WorkMeter& meter);
   Correction placed(const SegmentFinding& finding);
   void work_off(Correction& all);
   void tie_loose_parts(Correction& all);
@@ -111,6 +113,7 @@ class GlobalSlam {
   LoopClosureBuilder loops_;
   DockGraphBuilder docks_;
   SegmentSearch segment_search_;
+  PlaceWatch watch_;
   SolveSchedule schedule_;
   std::deque<std::uint64_t> not_looked_from_;  // nodes for which no candidates were looked for yet
   std::uint64_t session_begin_ = 0;            // the session's first node

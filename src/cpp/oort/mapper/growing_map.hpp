@@ -44,6 +44,9 @@ class GrowingMap {
   /// Takes out the closures that tie the nodes to others, but for firm ones.
   void withdraw_ties(const std::vector<NodeRange>& nodes);
 
+  /// From this node on its trajectory segment is another one.
+  void begin_segment(std::uint64_t node) { segments_.split(node); }
+
   /// Nothing is known any more of where the nodes lie but what closures say.
   void loosen(const std::vector<NodeRange>& nodes);
 

@@ -10,6 +10,7 @@
 #include "oort/geometry/work_meter.hpp"
 #include "oort/maintenance/lifelong_tuning.hpp"
 #include "oort/maintenance/prune.hpp"
+#include "oort/maintenance/tied_segments.hpp"
 #include "oort/map/locations.hpp"
 #include "oort/map/map_check.hpp"
 #include "oort/mapper/tuning.hpp"
@@ -242,10 +243,12 @@ const ClosureLog& Mapper::closure_attempts() const {
   return lane_->slam().closure_log();
 }
 
-void Mapper::take_apart(const SegmentFinding& elsewhere) {
-  if (elsewhere.withdrawn) map_.withdraw_ties(elsewhere.nodes);
-  map_.loosen(elsewhere.nodes);
-  if (elsewhere.withdrawn) tracking_.add_untied(elsewhere.nodes.front().begin, false);
+void Mapper::take(const SegmentFinding& finding) {
+  if (finding.withdrawn) map_.withdraw_ties(finding.nodes);
+  if (finding.begins_segment) map_.begin_segment(finding.nodes.front().begin);
+  if (finding.disproved) map_.loosen(finding.nodes);
+  if (finding.trusted) tracking_.trust(*finding.trusted);
+  if (finding.withdrawn) tracking_.add_untied(finding.nodes.front().begin, false);
 }
 
 /// Whether that changes the map.
@@ -253,7 +256,7 @@ bool Mapper::take_effect(const std::vector<Correction>& corrections) {
   bool solved = false, closed = false;
   for (const Correction& correction : corrections) {
     if (correction.reduced) reduce(*correction.reduced);
-    for (const SegmentFinding& elsewhere : correction.elsewhere) take_apart(elsewhere);
+    for (const SegmentFinding& finding : correction.segments) take(finding);
     for (const Closure& closure : correction.closures) map_.add(closure);
     if (correction.solution) map_.apply(*correction.solution);
     if (correction.clouds) map_.edit().clouds = *correction.clouds;
@@ -265,8 +268,8 @@ bool Mapper::take_effect(const std::vector<Correction>& corrections) {
       dock_request_->found = found;
     }
   }
-  if (solved && map_.node_count() > 0) {
-    tracking_.look_for_tie(map().graph, map_.segments().segment_begin(map_.node_count() - 1));
+  if (solved && tracking_.is_untied()) {
+    tracking_.look_for_tie(closed_parts(map().graph, map_.segments()).back());
   }
   return solved || closed || renumbering_.has_value();
 }

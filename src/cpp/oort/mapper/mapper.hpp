@@ -127,7 +127,7 @@ class Mapper {
   void reduce(const Pruned& reduced);
   void note(const Renumbering& nodes);
   void use(const Map& map);
-  void take_apart(const SegmentFinding& elsewhere);
+  void take(const SegmentFinding& finding);
   bool take_effect(const std::vector<Correction>& corrections);
   void add(const TrajectoryNode& node);
   bool remove_body();

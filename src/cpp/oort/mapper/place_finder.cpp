@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oort/mapper/place_finder.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "oort/geometry/chi_square.hpp"
 #include "oort/geometry/errors.hpp"
+#include "oort/graph/relative_uncertainty.hpp"
 #include "oort/map/trajectory_walk.hpp"
 #include "oort/mapper/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
@@ -78,10 +81,18 @@ void PlaceFinder::forget() {
   relocalizer_.reset();
 }
 
-std::optional<FoundPlace> PlaceFinder::find(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
-                                            std::uint64_t node, WorkMeter* meter) const {
-  const SearchEffort effort{MapperTuning::kRivalScore, MapperTuning::kSearchPoints, MapperTuning::kSearchExpansions,
-                            MapperTuning::kSearchPeaks, false};
+Look PlaceFinder::find(const Map& map, const TrajectorySegments& segments, std::uint64_t first, std::uint64_t node,
+                       WorkMeter* meter) const {
+  SearchEffort effort;
+  effort.floor = MapperTuning::kLeastScore;
+  effort.turn_cells = MapperTuning::kTurnCells;
+  effort.ratio = MapperTuning::kRivalScore;
+  effort.max_points = MapperTuning::kSearchPoints;
+  effort.max_expansions = MapperTuning::kSearchExpansions;
+  effort.max_expansions_to_first = MapperTuning::kExpansionsToFirst;
+  effort.max_peaks = MapperTuning::kSearchPeaks;
+  effort.min_support = MapperTuning::kWeakSupport;
+  effort.weighs_incomplete = false;
   frsm::OnLookups on_lookups;
   if (meter != nullptr) {
     on_lookups = [meter](std::uint64_t lookups) {
@@ -91,15 +102,22 @@ std::optional<FoundPlace> PlaceFinder::find(const Map& map, const TrajectorySegm
   const std::vector<PlacedScan> views = views_of(map, segments, first, node);
   charge(meter, MapperTuning::kWeighedPlaces * work_of_weighing(views, reference_->space().limits().resolution));
   const Relocalization found = relocalizer_->find(views, effort, on_lookups);
-  if (!found.found()) return std::nullopt;
+  if (!found.found()) {
+    return {std::nullopt, !found.stands_out || found.rejection == Rejection::kSearchLowSupport};
+  }
+  const Support& support = found.best->support;
+  const bool is_weak = support.value() < parameters_.localization.relocalizer.min_support;
+  if (is_weak && support.blocked + support.in_free > MapperTuning::kWeakContradictions * support.points) return {};
   const Pose2& T_drawn_node = found.best->T_map_sensor;
   const std::size_t nearest = nearest_drawn(T_drawn_node);
   const Pose2 T_map_drawn = map.graph.nodes[nodes_[nearest]].pose * inverse(poses_[nearest]);
-  return FoundPlace{node, T_map_drawn * T_drawn_node, rotate_covariance(found.best->covariance, T_map_drawn.theta)};
+  return {FoundPlace{node, T_map_drawn * T_drawn_node, rotate_covariance(found.best->covariance, T_map_drawn.theta),
+                     is_weak},
+          false};
 }
 
-bool PlaceFinder::contradicts(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
-                              std::uint64_t node, WorkMeter* meter) const {
+PlaceFinder::Fit PlaceFinder::fit(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
+                                  std::uint64_t node, WorkMeter* meter) const {
   const std::vector<PlacedScan> views = views_of(map, segments, first, node);
   charge(meter, work_of_weighing(views, reference_->space().limits().resolution));
   const std::size_t nearest = nearest_to(map, map.graph.nodes[node].pose);
@@ -109,7 +127,26 @@ bool PlaceFinder::contradicts(const Map& map, const TrajectorySegments& segments
   for (const PlacedScan& view : views) {
     reference_->weigh(view.cloud, T_drawn_node * view.T_odom_sensor, support);
   }
-  return support.blocked + support.in_free > MapperTuning::kContradictingShare * support.points;
+  return {support.blocked + support.in_free > MapperTuning::kContradictingShare * support.points,
+          support.value() > MapperTuning::kWeakSupport};
+}
+
+bool PlaceFinder::may_have_drifted(const FoundPlace& answer, const Map& map) const {
+  RelativeUncertainty uncertainty;
+  uncertainty.update(map.graph);
+  const std::uint64_t nearest = nodes_[nearest_to(map, answer.T_map_node)];
+  const std::optional<Eigen::Matrix3d> covariance = uncertainty.from(map.graph, answer.node)[nearest];
+  if (!covariance) return true;
+  const Pose2& T_map_node = map.graph.nodes[answer.node].pose;
+  const Pose2& T_map_nearest = map.graph.nodes[nearest].pose;
+  const Pose2 known = between(T_map_node, T_map_nearest), found = between(answer.T_map_node, T_map_nearest);
+  const Eigen::Vector2d moved = rotation(T_map_node.theta) * (found.translation() - known.translation());
+  const double turned = wrap_angle(found.theta - known.theta);
+  if (moved.norm() < MapperTuning::kCarried && std::abs(turned) < MapperTuning::kCarriedAngle) return true;
+  const Eigen::Vector3d difference(moved.x(), moved.y(), turned);
+  const Eigen::Vector3d floor(MapperTuning::kSameAnswer, MapperTuning::kSameAnswer, MapperTuning::kSameAnswerAngle);
+  const Eigen::Matrix3d wide = 4.0 * *covariance + Eigen::Matrix3d(floor.cwiseAbs2().asDiagonal());
+  return difference.dot(wide.inverse() * difference) < ChiSquare3::k99999;
 }
 
 Closure PlaceFinder::closure(const FoundPlace& place, const Map& map) const {

@@ -20,6 +20,13 @@ struct FoundPlace {
   std::uint64_t node = 0;
   Pose2 T_map_node;
   Eigen::Matrix3d covariance;  ///< along the axes of the map
+  bool is_weak = false;        ///< much of what was seen lies where nothing is known
+};
+
+/// What a search for a node came to.
+struct Look {
+  std::optional<FoundPlace> answer;  ///< if the place was found, and is not ambiguous
+  bool fits_nowhere = false;         ///< no place of the map looks like what was seen
 };
 
 /// Finds nodes on a part of the map that they do not hang on, at all headings and without a guess (Relocalizer).
@@ -33,13 +40,20 @@ class PlaceFinder {
   bool use(const Map& map, const std::vector<std::uint64_t>& nodes, bool anew, WorkMeter* meter);
   void forget();
 
-  /// By what a node saw and those before it, none before `first`. None unless the place is found and not ambiguous.
-  std::optional<FoundPlace> find(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
-                                 std::uint64_t node, WorkMeter* meter) const;
+  /// By what a node saw and those before it, none before `first`.
+  Look find(const Map& map, const TrajectorySegments& segments, std::uint64_t first, std::uint64_t node,
+            WorkMeter* meter) const;
 
-  /// Whether what they saw cannot be where the map has the node.
-  bool contradicts(const Map& map, const TrajectorySegments& segments, std::uint64_t first, std::uint64_t node,
-                   WorkMeter* meter) const;
+  /// How what they saw fits where the map has the node.
+  struct Fit {
+    bool contradicts = false;  ///< it cannot be there: much of it is behind walls, or on free floor
+    bool confirms = false;     ///< most of it lies on known surfaces
+  };
+  Fit fit(const Map& map, const TrajectorySegments& segments, std::uint64_t first, std::uint64_t node,
+          WorkMeter* meter) const;
+
+  /// Whether the graph knows its way to the place so badly that the answer is where the node may well be.
+  bool may_have_drifted(const FoundPlace& answer, const Map& map) const;
 
   /// To the drawn node that is nearest to the place.
   Closure closure(const FoundPlace& place, const Map& map) const;

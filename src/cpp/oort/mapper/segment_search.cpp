@@ -3,9 +3,12 @@
 #include "oort/mapper/segment_search.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "oort/maintenance/tied_segments.hpp"
 #include "oort/map/parts.hpp"
+#include "oort/map/tuning.hpp"
 #include "oort/mapper/tuning.hpp"
 
 namespace oort {
@@ -48,14 +51,6 @@ std::vector<std::uint64_t> nodes_of(const std::vector<std::uint64_t>& parts, std
   return nodes;
 }
 
-/// What closures alone hold together: odometry may be wrong wherever a new local map was begun.
-std::vector<std::uint64_t> closed_parts(const Graph& graph, const TrajectorySegments& segments) {
-  std::vector<std::uint64_t> parts(graph.nodes.size());
-  for (std::uint64_t node = 0; node < parts.size(); ++node) parts[node] = segments.segment_begin(node);
-  join_parts(graph, 0.0, parts);
-  return parts;
-}
-
 std::vector<NodeRange> ranges_of(const std::vector<std::uint64_t>& parts, std::uint64_t part) {
   std::vector<NodeRange> ranges;
   for (std::uint64_t node = 0; node < parts.size(); ++node) {
@@ -70,60 +65,133 @@ Pose2 driven(const Map& map, const FoundPlace& from, const FoundPlace& to) {
   return between(map.graph.nodes[from.node].pose, map.graph.nodes[to.node].pose);
 }
 
+double weight_of(const std::vector<FoundPlace>& answers) {
+  double weight = 0.0;
+  for (const FoundPlace& answer : answers) weight += answer.is_weak ? MapperTuning::kWeakWeight : 1.0;
+  return weight;
+}
+
 /// Whether the answers come from so far apart that they are no repetitions of each other.
 bool are_enough(const std::vector<FoundPlace>& answers, const Map& map) {
-  return answers.size() >= MapperTuning::kAgreeingAnswers &&
+  return weight_of(answers) >= MapperTuning::kAgreeingAnswers &&
          driven(map, answers.front(), answers.back()).translation().norm() >= MapperTuning::kAnswersApart;
 }
 
-/// Keeps of the answers those that agree with a new one, and adds it.
+/// Keeps of the answers those that agree with a new one, and adds it. A weak one does not speak against others.
 void add_answer(std::vector<FoundPlace>& answers, const FoundPlace& answer, const Map& map) {
   const auto disagrees = [&](const FoundPlace& other) { return !agree(other, answer, driven(map, other, answer)); };
+  const auto is_strong = [](const FoundPlace& other) { return !other.is_weak; };
+  if (answer.is_weak && std::any_of(answers.begin(), answers.end(), is_strong) &&
+      std::any_of(answers.begin(), answers.end(), disagrees)) {
+    return;
+  }
   answers.erase(std::remove_if(answers.begin(), answers.end(), disagrees), answers.end());
   const bool is_new =
       answers.empty() || driven(map, answers.back(), answer).translation().norm() >= MapperTuning::kAnswerTravel;
   if (is_new) answers.push_back(answer);
 }
 
+/// At the end, up to so many nodes of a segment.
+std::vector<std::uint64_t> nodes_to_look_for(const NodeRange& segment) {
+  const std::uint64_t step =
+      std::max((segment.end - segment.begin) / MapperTuning::kMaxLooks, MapperTuning::kLeastSearchSpacing);
+  std::vector<std::uint64_t> nodes;
+  for (std::uint64_t node = segment.begin + MapperTuning::kFirstSearch - 1; node < segment.end; node += step) {
+    nodes.push_back(node);
+  }
+  return nodes;
+}
+
 }  // namespace
 
-void SegmentSearch::begin(std::uint64_t first_node, bool is_unknown) {
+void SegmentSearch::begin(std::uint64_t first_node, Doubt doubt) {
   first_ = first_node;
-  due_ = first_node + (is_unknown ? MapperTuning::kFirstSearch : MapperTuning::kFirstSearchNearby);
+  due_ = first_node + (doubt == Doubt::kAll ? MapperTuning::kFirstSearch : MapperTuning::kFirstSearchNearby);
   was_found_ = false;
-  is_unknown_ = is_unknown;
+  doubt_ = doubt;
   is_distrusted_ = false;
-  looks_tied_ = contradictions_ = 0;
+  looks_tied_ = contradictions_ = quiet_looks_ = 0;
   answers_.clear();
+}
+
+/// Where a new local map was begun not long before, the doubt of then was right: a false closure has ended it.
+void SegmentSearch::suspect(std::uint64_t first_node, const TrajectorySegments& segments) {
+  if (first_ || first_node < suspect_from_) return;
+  const std::uint64_t begin_of_segment = segments.segment_begin(first_node);
+  const bool was_doubted = begin_of_segment > 0 && first_node - begin_of_segment < MapperTuning::kSuspectReach;
+  begin(was_doubted ? begin_of_segment : first_node, Doubt::kMap);
+}
+
+/// When to look next: soon after an answer, which others may confirm, else ever more rarely.
+void SegmentSearch::schedule(std::uint64_t count, bool contradicts) {
+  const std::uint64_t grown = count - *first_;
+  const bool is_likely_elsewhere = doubt_ == Doubt::kAll || contradicts;
+  const bool is_soon = is_likely_elsewhere && grown < MapperTuning::kSearchSoon;
+  const std::uint64_t parts = is_soon ? MapperTuning::kSearchGrowthParts : MapperTuning::kDoubtGrowthParts;
+  const std::uint64_t growth = answers_.empty() ? grown / parts : 0;
+  due_ = count + std::max(MapperTuning::kLeastSearchSpacing, growth);
 }
 
 SegmentFinding SegmentSearch::look(const Map& map, const TrajectorySegments& segments, WorkMeter* meter) {
   const std::uint64_t count = map.graph.nodes.size(), newest = count - 1;
-  const std::uint64_t parts_grown = is_unknown_ ? MapperTuning::kSearchGrowthParts : MapperTuning::kDoubtGrowthParts;
-  due_ = count + std::max(MapperTuning::kLeastSearchSpacing, (count - *first_) / parts_grown);
-  if (!is_unknown_) first_ = first_doubtful(segments, *first_);
+  if (doubt_ == Doubt::kOdometry) first_ = first_doubtful(segments, *first_);
   const std::uint64_t first = *first_;
-  const bool is_tied = oort::is_tied(map.graph, first);
-  // Where odometry is merely doubted, closures near by may be believed: they were looked for where it says.
-  if (first == 0 || is_docked(map.graph, first) || (is_tied && !is_unknown_ && !was_found_)) {
-    forget();
-    return {};
-  }
+  const bool is_tied = oort::is_tied(map.graph, first) || doubt_ == Doubt::kMap;
+  if (is_over(map, is_tied)) return ended();
   const std::vector<std::uint64_t> parts = tied_parts(map.graph, segments);
   const std::uint64_t main = largest_part(parts, first);
-  if (!finder_.use(map, nodes_of(parts, main, first), is_unknown_, meter)) {
-    forget();
-    return {};
-  }
-  weigh_tie(is_tied, finder_.contradicts(map, segments, first, newest, meter));
-  if (is_tied && contradictions_ >= MapperTuning::kContradictions && 2 * contradictions_ >= looks_tied_) {
-    begin(first, true);
+  if (!finder_.use(map, nodes_of(parts, main, first), doubt_ == Doubt::kAll, meter)) return ended();
+  const PlaceFinder::Fit fit = finder_.fit(map, segments, first, newest, meter);
+  weigh_tie(is_tied, fit.contradicts);
+  if (is_tied && contradicts_mostly() && doubt_ != Doubt::kMap) {
+    begin(first, Doubt::kAll);
     is_distrusted_ = true;
     due_ = count + MapperTuning::kLeastSearchSpacing;
-    return {{{first}}, true, true, {}, {}};
+    return {{{first}}, true, false, true, {}, {}, std::nullopt};
   }
-  const std::optional<FoundPlace> answer = finder_.find(map, segments, first, newest, meter);
-  return answer ? take(*answer, first, map) : SegmentFinding{};
+  Look look;
+  const bool is_confirmed = doubt_ == Doubt::kOdometry && !was_found_ && fit.confirms;
+  if (!is_confirmed) look = finder_.find(map, segments, first, newest, meter);
+  SegmentFinding finding;
+  if (look.answer) {
+    finding = doubt_ == Doubt::kMap ? take_suspect(*look.answer, first, map) : take(*look.answer, first, map);
+  }
+  if (!first_) return finding;
+  schedule(count, fit.contradicts);
+  if (finding.is_nothing()) finding.trusted = trust(look, fit);
+  return finding;
+}
+
+/// Nothing more is looked for.
+SegmentFinding SegmentSearch::ended() {
+  forget();
+  SegmentFinding finding;
+  if (doubt_ == Doubt::kMap) finding.trusted = true;
+  return finding;
+}
+
+/// Where odometry is merely doubted, closures near by may be believed: they were looked for where it says.
+bool SegmentSearch::is_over(const Map& map, bool is_tied) const {
+  return *first_ == 0 || is_docked(map.graph, *first_) || (is_tied && doubt_ == Doubt::kOdometry && !was_found_);
+}
+
+bool SegmentSearch::contradicts_mostly() const {
+  return contradictions_ >= MapperTuning::kContradictions && 2 * contradictions_ >= looks_tied_;
+}
+
+/// Whether the place is to be trusted, if that changes. Odometry that was merely doubted is once nothing speaks against
+/// it; the search goes on. The map is not while most looks contradict it, and is again once they confirm it.
+std::optional<bool> SegmentSearch::trust(const Look& look, const PlaceFinder::Fit& fit) {
+  const bool is_of_map = doubt_ == Doubt::kMap;
+  const bool is_quiet = fit.confirms || (!is_of_map && !fit.contradicts && look.fits_nowhere);
+  quiet_looks_ = is_quiet && answers_.empty() ? quiet_looks_ + 1 : 0;
+  if (is_of_map && fit.contradicts && contradicts_mostly()) return false;
+  if (doubt_ == Doubt::kAll || quiet_looks_ != MapperTuning::kQuietLooks) return std::nullopt;
+  if (is_of_map) {
+    forget();
+    suspect_from_ = due_ + MapperTuning::kSuspectReach;
+  }
+  return true;
 }
 
 /// Counts the looks at a segment that is tied, and those of them that contradict where it is.
@@ -155,6 +223,28 @@ SegmentFinding SegmentSearch::take(const FoundPlace& answer, std::uint64_t first
   return finding;
 }
 
+/// Of nodes that hang on the map by scans that fitted each other: what answers say is drift if odometry and scans may
+/// have drifted so far, and closures mend it. If not, the robot was carried.
+SegmentFinding SegmentSearch::take_suspect(const FoundPlace& answer, std::uint64_t first, const Map& map) {
+  add_answer(answers_, answer, map);
+  if (!are_enough(answers_, map)) return {};
+  SegmentFinding finding = placed(answers_, map);
+  const bool is_elsewhere = finding.disproved && !finder_.may_have_drifted(answers_.back(), map);
+  const bool is_proved = contradicts_mostly() || weight_of(answers_) >= MapperTuning::kAnswersAgainstMap;
+  if (is_elsewhere && !is_proved) return {};
+  finding.nodes = {{first}};
+  finding.disproved = finding.withdrawn = finding.begins_segment = is_elsewhere;
+  finding.trusted = true;
+  forget();
+  suspect_from_ = map.graph.nodes.size() + MapperTuning::kSuspectReach;
+  if (is_elsewhere) {
+    begin(first, Doubt::kAll);
+    schedule(map.graph.nodes.size(), false);
+    was_found_ = true;
+  }
+  return finding;
+}
+
 SegmentFinding SegmentSearch::placed(const std::vector<FoundPlace>& answers, const Map& map) const {
   SegmentFinding finding;
   for (const FoundPlace& answer : answers) finding.closures.push_back(finder_.closure(answer, map));
@@ -166,20 +256,18 @@ SegmentFinding SegmentSearch::placed(const std::vector<FoundPlace>& answers, con
 }
 
 std::vector<SegmentFinding> SegmentSearch::look_for_all(const Map& map, const TrajectorySegments& segments,
-                                                        int& looks_left) {
+                                                        WorkBudget& budget) {
   const std::uint64_t count = map.graph.nodes.size();
   const std::vector<std::uint64_t> parts = closed_parts(map.graph, segments);
   const std::uint64_t main = largest_part(parts, count);
   std::vector<SegmentFinding> findings;
   const std::vector<std::uint64_t> main_nodes = nodes_of(parts, main, count);
-  if (main_nodes.size() == count || !finder_.use(map, main_nodes, true, nullptr)) return findings;
+  if (main_nodes.size() == count || budget.is_spent() || !finder_.use(map, main_nodes, true, &budget)) return findings;
   std::vector<std::uint64_t> found;  // parts
-  for (std::uint64_t begin = 0; begin < count; begin = segments.segment_end(begin)) {
-    const NodeRange segment{begin, segments.segment_end(begin)};
-    const std::uint64_t part = parts[begin];
-    const bool is_small = segment.end - begin < MapperTuning::kFirstSearch;
-    if (part == main || is_small || std::count(found.begin(), found.end(), part) > 0) continue;
-    SegmentFinding finding = look_for(segment, map, segments, looks_left);
+  for (const NodeRange& segment : most_doubtful_first(map, segments, parts, main, budget)) {
+    const std::uint64_t part = parts[segment.begin];
+    if (std::count(found.begin(), found.end(), part) > 0) continue;
+    SegmentFinding finding = look_for(segment, map, segments, budget);
     if (finding.is_nothing()) continue;
     finding.nodes = ranges_of(parts, part);
     findings.push_back(finding);
@@ -188,18 +276,48 @@ std::vector<SegmentFinding> SegmentSearch::look_for_all(const Map& map, const Tr
   return findings;
 }
 
+/// The segments of other parts than the main one: those of which nothing tells where they are, then those with the most
+/// looks that contradict where odometry has them.
+std::vector<NodeRange> SegmentSearch::most_doubtful_first(const Map& map, const TrajectorySegments& segments,
+                                                          const std::vector<std::uint64_t>& parts, std::uint64_t main,
+                                                          WorkBudget& budget) const {
+  std::vector<std::uint64_t> placed(parts.size());
+  std::iota(placed.begin(), placed.end(), std::uint64_t{0});
+  join_parts(map.graph, MapTuning::kMaxPlacedDeviation, placed);
+  std::vector<std::pair<double, NodeRange>> ranked;
+  for (std::uint64_t begin = 0; begin < parts.size(); begin = segments.segment_end(begin)) {
+    const NodeRange segment{begin, segments.segment_end(begin)};
+    if (parts[begin] == main || segment.end - begin < MapperTuning::kFirstSearch) continue;
+    const bool is_placed = placed[begin] == placed[main];
+    const double doubt = is_placed ? contradicting_share(segment, map, segments, budget) : 1.0;
+    if (doubt > 0.0) ranked.emplace_back(-doubt, segment);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<NodeRange> sorted;
+  for (const auto& [doubt, segment] : ranked) sorted.push_back(segment);
+  return sorted;
+}
+
+double SegmentSearch::contradicting_share(const NodeRange& segment, const Map& map, const TrajectorySegments& segments,
+                                          WorkBudget& budget) const {
+  const std::vector<std::uint64_t> nodes = nodes_to_look_for(segment);
+  const auto contradicts = [&](std::uint64_t node) {
+    return finder_.fit(map, segments, segment.begin, node, &budget).contradicts;
+  };
+  return static_cast<double>(std::count_if(nodes.begin(), nodes.end(), contradicts)) /
+         static_cast<double>(nodes.size());
+}
+
 /// Looks for a segment by what was seen on all of it. One that is not found stays where odometry leads, even where that
 /// contradicts the map: a bent map does so too.
 SegmentFinding SegmentSearch::look_for(const NodeRange& segment, const Map& map, const TrajectorySegments& segments,
-                                       int& looks_left) const {
+                                       WorkBudget& budget) const {
   std::vector<FoundPlace> answers;
-  const std::uint64_t step =
-      std::max((segment.end - segment.begin) / MapperTuning::kMaxLooks, MapperTuning::kLeastSearchSpacing);
-  for (std::uint64_t node = segment.begin + MapperTuning::kFirstSearch - 1; node < segment.end; node += step) {
-    if (looks_left-- <= 0) return {};
-    const std::optional<FoundPlace> answer = finder_.find(map, segments, segment.begin, node, nullptr);
-    if (!answer) continue;
-    add_answer(answers, *answer, map);
+  for (const std::uint64_t node : nodes_to_look_for(segment)) {
+    if (budget.is_spent()) return {};
+    const Look look = finder_.find(map, segments, segment.begin, node, &budget);
+    if (!look.answer) continue;
+    add_answer(answers, *look.answer, map);
     if (are_enough(answers, map)) return placed(answers, map);
   }
   return {};

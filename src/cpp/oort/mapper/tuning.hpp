@@ -36,23 +36,36 @@ struct MapperTuning {
   static constexpr std::uint64_t kFirstSearchNearby = 6;
   static constexpr std::uint64_t kLeastSearchSpacing = 2;  ///< then after as many more,
   static constexpr std::uint64_t kSearchGrowthParts = 5;   ///< or one part in so many of what it has by then;
-  static constexpr std::uint64_t kDoubtGrowthParts = 2;    ///< of what is merely doubted
+  static constexpr std::uint64_t kDoubtGrowthParts = 2;    ///< of what is merely doubted, and not contradicted,
+  static constexpr std::uint64_t kSearchSoon = 60;         ///< and of all that has more nodes
   static constexpr std::size_t kNodesPerSearch = 11;       ///< that are looked for together: some 2 m of travel
 
   // What one search may cost while mapping: about 0.1 s at most. Searches that find something in homes cost a third.
+  /// Places that score less are not looked at: answers score 0.8 and more (homes). A search that finds nothing is the
+  /// dearest, as no good place prunes it.
+  static constexpr double kLeastScore = 0.6;
+  /// By which a step of the heading moves the farthest point: half the headings, for a table that is blurred by more.
+  static constexpr double kTurnCells = 2.0;
   /// Least share of the best score that a rival has. To 0.75, as for a robot that is looked for on a saved map, the
   /// search of fr079 would not end; the support of what scores less differs by relocalizer.min_lead anyway.
   static constexpr double kRivalScore = 0.85;
   static constexpr std::size_t kSearchPoints = 250;
-  static constexpr std::size_t kSearchExpansions = 100000;
+  static constexpr std::size_t kSearchExpansions = 60000;
+  /// Where a place is found, it is so before; on large grounds most searches find none.
+  static constexpr std::size_t kExpansionsToFirst = 15000;
   static constexpr std::size_t kSearchPeaks = 8;  ///< where more score as well, the place is ambiguous
 
   // Two answers agree within this; what they say of a bent map is no better.
-  static constexpr double kSameAnswer = 0.3;          ///< [m]
-  static constexpr double kSameAnswerAngle = 0.15;    ///< [rad]
-  static constexpr double kAnswerTravel = 0.3;        ///< [m] from one answer to the next
-  static constexpr std::size_t kAgreeingAnswers = 3;  ///< that are believed, if they are
-  static constexpr double kAnswersApart = 1.0;        ///< [m] from the first to the last
+  static constexpr double kSameAnswer = 0.3;        ///< [m]
+  static constexpr double kSameAnswerAngle = 0.15;  ///< [rad]
+  static constexpr double kAnswerTravel = 0.3;      ///< [m] from one answer to the next
+  static constexpr double kAgreeingAnswers = 3.0;   ///< that are believed, if they are
+  static constexpr double kAnswersApart = 1.0;      ///< [m] from the first to the last
+  // An answer of less support than one must have by itself is weak, if what does not lie on known surfaces lies where
+  // nothing is known: a robot in a corner that was not mapped.
+  static constexpr double kWeakSupport = 0.65;
+  static constexpr double kWeakContradictions = 0.1;  ///< share of the returns behind walls or on free floor, at most
+  static constexpr double kWeakWeight = 0.5;          ///< so many answers it counts as
   // Errors of an answer that the shape of its match does not show.
   static constexpr double kAnswerSigma = 0.05;        ///< [m]
   static constexpr double kAnswerSigmaTheta = 0.015;  ///< [rad]
@@ -62,9 +75,38 @@ struct MapperTuning {
   static constexpr double kContradictingShare = 0.3;
   static constexpr int kContradictions = 3;
 
+  /// Looks in a row after which odometry is believed where it was merely doubted: they confirm where it has the robot,
+  /// or nothing contradicts it and no place of the map looks like what it sees.
+  static constexpr int kQuietLooks = 3;
+
   static constexpr std::uint64_t kMaxLooks = 16;  ///< for a segment when mapping ends
-  static constexpr int kMaxLooksInAll = 100;      ///< some 10 s in a building, 60 s on large grounds (fr-clinic)
+  static constexpr double kFinalSearch = 2e6;     ///< [work units] of all looks when mapping ends
   static constexpr int kMaxRounds = 8;            ///< of looking for all of them: what was found helps to find others
+
+  // Whether a node is where the map has it (PlaceWatch). It is compared with so many older nodes around it,
+  static constexpr std::size_t kWatchNeighbours = 4;
+  static constexpr std::uint64_t kWatchAge = 30;  ///< [nodes] older at least: from another passage
+  static constexpr double kWatchReach = 1.5;      ///< [m] within this, a radian of heading counting as
+  static constexpr double kWatchLever = 0.5;      ///< [m]
+  static constexpr int kLeastCompared = 60;       ///< returns, of both sides
+  // A return lies on what must be free if it is nearer than what the other node saw there by more than
+  static constexpr double kFreeMargin = 0.25;       ///< [m]
+  static constexpr double kFreeMarginShare = 0.05;  ///< and this share of its range
+  /// Share of such returns above which a node is suspect. In homes 97 % of the nodes have less than 0.03, and half of
+  /// those at a wrong place more than 0.14 (homes 105 and 128 of bench/kidnapped.py).
+  static constexpr double kSuspectShare = 0.1;
+  static constexpr std::size_t kWatched = 4;  ///< latest nodes that are weighed,
+  static constexpr int kSuspects = 3;         ///< so many of which must be suspect
+  /// Answers that agree on another place are believed against scans that fitted each other where nothing was mapped,
+  /// too.
+  static constexpr double kAnswersAgainstMap = 5.0;
+
+  /// [nodes] After so many a place that was found to be right may be doubted again; and a new local map that was begun
+  /// no longer before is where the doubt begins.
+  static constexpr std::uint64_t kSuspectReach = 30;
+  // An answer nearer to where the map has the robot is drift: closures mend it.
+  static constexpr double kCarried = 1.0;       ///< [m]
+  static constexpr double kCarriedAngle = 0.5;  ///< [rad]
 
   static constexpr double kReferenceMoved = 0.1;  ///< [m] by which a node moves until the map is drawn anew,
   /// which is done once the map has grown by one part in so many: all drawings together cost four of the final map's
@@ -90,11 +132,13 @@ struct MapperTuning {
   static constexpr double kLooseSigma = 15.0;  ///< [m, rad] of an edge that shall tell nothing
 
   // Work units (geometry/work_meter.hpp).
-  static constexpr double kWorkPerReferencePoint = 1.5;
-  static constexpr double kWorkPerLookup = 0.0015;
+  static constexpr double kWorkPerReferencePoint = 2.5;
+  static constexpr double kWorkPerLookup = 0.002;
   static constexpr double kWorkPerRayStep = 0.006;
   static constexpr double kWorkPerView = 50.0;      ///< node that is looked at whether it is needed,
   static constexpr double kWorkPerReduced = 250.0;  ///< and for the rest of a reduction, beside solving
+  static constexpr double kWorkPerWatched = 0.005;  ///< node of the map
+  static constexpr double kWorkPerCompared = 0.06;  ///< return
   static constexpr double kWeighedPlaces = 2.0;     ///< per search, usually
 };
 

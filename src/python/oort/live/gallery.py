@@ -28,7 +28,8 @@ class Gallery:
     ) -> None:
         """Drawings go to ``listener`` from the drawing thread; ``wake`` makes the mapping thread call tick()."""
         self._naming = naming
-        self._parameters = parameters
+        self.parameters = parameters
+        """what maps are drawn with"""
         self._listener = listener
         self._wake = wake
         self._thread = Worker("oort-draw")
@@ -105,7 +106,7 @@ class Gallery:
         try:
             drawing = self._drawing
             if drawing is None or drawing.revision != revision:
-                drawing = Drawing(revision, *render_map(map_, self._parameters), map_)
+                drawing = Drawing(revision, *render_map(map_, self.parameters), map_)
         except Exception as error:
             self._fail(revision, str(error))
             raise

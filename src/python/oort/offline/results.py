@@ -25,16 +25,16 @@ from oort.export import (
     write_picture,
     write_tum,
 )
+from oort.export.beside import Beside, set_beside
 from oort.export.chart import write_chart
 from oort.export.files import write_atomically
-from oort.offline.beside import Beside, set_beside
 from oort.offline.drawing import draw_map
 from oort.offline.outputs import Outputs
 from oort.offline.trajectory import TrajectoryRecorder
 from oort.recording import Recording
 from oort.report.page import make_report_page
 from oort.report.replay_report import make_report
-from oort.report.run_page import run_page_data
+from oort.report.run_page import Way, run_page_data
 from oort.report.scan_log import ScanLog
 from oort.report.stopwatch import Stopwatch
 from oort.session import Session
@@ -95,8 +95,10 @@ def write_results(drive: Drive, out: Path, map_path: str, truth: Truth | None = 
     outputs.write("graph.g2o", lambda: write_g2o(out / "graph.g2o", pose_graph(map_)))
     drawn = outputs.work_out("any picture of the map", lambda: draw_map(map_, drive.parameters))
     grid, notes = (drawn[0][0], drawn[1]) if isinstance(drawn, tuple) else (None, [])
+    beside = None
     if grid is not None and grid.cells.size:
-        _write_pictures(drive, out, map_, grid, base_poses, outputs)
+        beside = set_beside(map_, grid, drive.parameters)
+        _write_pictures(drive, out, map_, grid, beside, base_poses, outputs)
     histograms = _histograms(drive, map_)
     if panels_ := panels(histograms):
         outputs.write("histograms.png", lambda: write_chart(out / "histograms.png", panels_))
@@ -107,7 +109,7 @@ def write_results(drive: Drive, out: Path, map_path: str, truth: Truth | None = 
     text = json.dumps(report, indent=2) + "\n"
     outputs.write("report.json", lambda: write_atomically(out / "report.json", text.encode()))
     page = out / "report.html"
-    outputs.write("report.html", lambda: _write_page(page, drive, report, map_, grid, base_poses, judgement))
+    outputs.write("report.html", lambda: _write_page(page, drive, report, map_, grid, beside, base_poses, judgement))
     return Results(report, outputs.written, outputs.failed)
 
 
@@ -118,10 +120,15 @@ def _judge(drive: Drive, base_poses: NDArray[np.float64], truth: Truth, outputs:
 
 
 def _write_pictures(
-    drive: Drive, out: Path, map_: Map, grid: OccupancyGrid, base_poses: NDArray[np.float64], outputs: Outputs
+    drive: Drive,
+    out: Path,
+    map_: Map,
+    grid: OccupancyGrid,
+    beside: Beside,
+    base_poses: NDArray[np.float64],
+    outputs: Outputs,
 ) -> None:
     origin = (*grid.origin, 0.0)
-    beside = set_beside(map_, grid, drive.parameters)
     closures = _closure_ends(map_, beside)
     drawn = np.isfinite(closures).all(axis=(1, 2))
     on = map_.switchable_edges["switch"] >= SWITCH_ON
@@ -189,11 +196,13 @@ def _write_page(
     report: dict[str, Any],
     map_: Map,
     grid: OccupancyGrid | None,
+    beside: Beside | None,
     base_poses: NDArray[np.float64],
     judgement: Judgement | None,
 ) -> None:
     attempts = judge_attempts(drive.session.mapper.closure_attempts, map_)
-    data = run_page_data(report, drive.parameters, map_, grid, attempts, drive.log, base_poses, judgement)
+    way = Way(drive.log, base_poses, drive.recorder.carriers())
+    data = run_page_data(report, drive.parameters, map_, grid, beside, attempts, way, judgement)
     write_atomically(path, make_report_page(f"Oort: {drive.recording.name}", data))
 
 
@@ -201,15 +210,11 @@ def _names(drive: Drive) -> list[tuple[str, str]]:
     return [(space, id) for space, id, *_ in drive.session.mapper.locations]
 
 
-def _closure_ends(map_: Map, beside: Beside) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """(k, 2, 2): where each closure is in the picture; both ends at the first node if they are of different parts.
-
-    NaN for a closure of nodes that are not drawn.
-    """
+def _closure_ends(map_: Map, beside: Beside) -> NDArray[np.float64]:
+    """(k, 2, 2): where each closure is in the picture; NaN for a closure of nodes that are not drawn."""
     edges = map_.switchable_edges
-    positions = map_.node_poses[:, :2] + beside.shift
-    i, j = edges["i"], np.where(beside.part[edges["i"]] == beside.part[edges["j"]], edges["j"], edges["i"])
-    return np.stack([positions[i], positions[j]], axis=1)
+    positions: NDArray[np.float64] = map_.node_poses[:, :2] + beside.shift
+    return positions[beside.ends(edges["i"], edges["j"])]
 
 
 def _way(drive: Drive, base_poses: NDArray[np.float64], beside: Beside) -> NDArray[np.float64]:

@@ -16,6 +16,7 @@ from oort.areas import areas_of_map, is_area
 from oort.errors import OortError
 from oort.evaluation.attempts import FOLDED, Attempt
 from oort.evaluation.truth import Judgement
+from oort.export.beside import Beside
 from oort.export.map_server import grey_picture
 from oort.export.named_rooms import named_rooms
 from oort.export.walls import fit_walls
@@ -36,15 +37,25 @@ _MOST_POINTS = 1_500_000  # of all scans together: some 6 MB
 _CHAIN_KINDS = ("laser", "odometry")
 
 
-def grid_layer(grid: OccupancyGrid) -> dict[str, Any]:
-    """The map as a PNG, with its place."""
+def grid_layer(grid: OccupancyGrid, beside: Beside) -> dict[str, Any]:
+    """The map with its loose parts as a PNG, with its place."""
     buffer = io.BytesIO()
-    Image.fromarray(grey_picture(grid.cells)).save(buffer, format="PNG", optimize=True)
+    Image.fromarray(grey_picture(beside.cells)).save(buffer, format="PNG", optimize=True)
+    height, width = beside.cells.shape
     return {
         "png": base64.b64encode(buffer.getvalue()).decode("ascii"),
         "resolution": grid.resolution,
         "origin": list(grid.origin),
-        "size": [grid.width, grid.height],
+        "size": [width, height],
+    }
+
+
+def beside_layer(beside: Beside) -> dict[str, Any]:
+    """How far each node is drawn from its pose, NaN if it is not drawn, and the number of its part; the captions."""
+    return {
+        "shift": pack(beside.shift, "f4"),
+        "part": pack(beside.part, "i4"),
+        "captions": [{"text": text, "place": list(place)} for text, place in beside.captions],
     }
 
 

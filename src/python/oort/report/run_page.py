@@ -3,6 +3,7 @@
 """The data of report.html: what a run left, gathered for the page."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,11 @@ from numpy.typing import NDArray
 from oort._core import Map, OccupancyGrid, Parameters, parameter_table
 from oort.evaluation.attempts import Attempt
 from oort.evaluation.truth import Judgement
+from oort.export.beside import Beside
 from oort.report.arrays import pack
 from oort.report.layers import (
     area_layer,
+    beside_layer,
     closure_layer,
     edge_layer,
     grid_layer,
@@ -32,17 +35,28 @@ MOST_SAMPLES = 20_000
 """rows of the timeline: an hour at 5 Hz"""
 
 
+@dataclass(frozen=True, eq=False)
+class Way:
+    """Each scan of the run."""
+
+    log: ScanLog
+    base_poses: NDArray[np.float64]
+    """T_map_base, (n, 3)"""
+    carriers: NDArray[np.int64]
+    """(n,) the node that it is carried by, -1 of none"""
+
+
 def run_page_data(
     report: Mapping[str, Any],
     parameters: Parameters,
     map_: Map,
     grid: OccupancyGrid | None,
+    beside: Beside | None,
     attempts: Sequence[Attempt],
-    log: ScanLog,
-    base_poses: NDArray[np.float64],
+    way: Way,
     judgement: Judgement | None = None,
 ) -> dict[str, Any]:
-    """What the page of a run shows. ``base_poses`` are T_map_base, (n, 3), of the scans in ``log``."""
+    """What the page of a run shows. ``beside`` is the drawn map with its loose parts, None if there is no drawing."""
     return {
         "page_version": PAGE_VERSION,
         "name": report["input"],
@@ -53,15 +67,16 @@ def run_page_data(
         "odometry_faults": report.get("odometry_faults", {"count": 0, "first": []}),
         "parameters": parameters.to_dict(),
         "changed_parameters": changed_parameters(parameters),
-        "grid": None if grid is None or not grid.cells.size else grid_layer(grid),
+        "grid": None if grid is None or beside is None else grid_layer(grid, beside),
+        "beside": None if beside is None else beside_layer(beside),
         "nodes": node_layer(map_),
         "edges": edge_layer(map_),
         "closures": closure_layer(map_, attempts),
         "places": place_layer(map_),
         "rooms": room_layer(map_, grid),
         "areas": area_layer(map_),
-        "samples": _samples(log, base_poses),
-        "truth": None if judgement is None else truth_layer(judgement, thinned(log, MOST_SAMPLES)[0], base_poses),
+        "samples": _samples(way),
+        "truth": None if judgement is None else _truth(judgement, way),
     }
 
 
@@ -74,15 +89,20 @@ def changed_parameters(parameters: Parameters) -> list[dict[str, Any]]:
     ]
 
 
-def _samples(log: ScanLog, base_poses: NDArray[np.float64]) -> dict[str, Any]:
-    rows, columns = thinned(log, MOST_SAMPLES)
+def _truth(judgement: Judgement, way: Way) -> dict[str, Any]:
+    return truth_layer(judgement, thinned(way.log, MOST_SAMPLES)[0], way.base_poses)
+
+
+def _samples(way: Way) -> dict[str, Any]:
+    rows, columns = thinned(way.log, MOST_SAMPLES)
     begin = float(columns["time"].min()) if len(rows) else 0.0
     return {
         "begin": begin,
-        "scans": len(log.times),
+        "scans": len(way.log.times),
         "states": list(TRACKING_STATES),
         "time": pack(columns["time"] - begin, "f4"),
-        "pose": pack(base_poses[rows].reshape(-1, 3), "f4"),
+        "pose": pack(way.base_poses[rows].reshape(-1, 3), "f4"),
+        "node": pack(way.carriers[rows], "i4"),
         "state": pack(columns["state"], "u1"),
         **{name: pack(columns[name], "f4") for name in ("inlier_ratio", "local_ms", "waited_ms")},
     }

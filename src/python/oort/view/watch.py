@@ -8,15 +8,17 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from oort._core import SWITCH_ON, Map
 from oort.areas import areas_of, is_area
 from oort.errors import StateError
-from oort.live import Drawing, LiveSession
+from oort.export.beside import Beside, set_beside
+from oort.live import LiveSession
 from oort.live.window import Window
 from oort.poses import compose
 from oort.recording import Scan
-from oort.report.arrays import pack
+from oort.report.arrays import Packed, pack
 from oort.report.layers import grid_layer
 from oort.session import State
 
@@ -86,7 +88,8 @@ class Watch:
         drawing = self._live.gallery.drawing
         if drawing is None or not drawing.grid.cells.size:
             raise StateError("there is no map yet")
-        return {"revision": drawing.revision, "grid": grid_layer(drawing.grid), **_graph(drawing)}
+        beside = set_beside(drawing.map, drawing.grid, self._live.gallery.parameters)
+        return {"revision": drawing.revision, "grid": grid_layer(drawing.grid, beside), **_graph(drawing.map, beside)}
 
     def _scan(self) -> list[float]:
         """x, y, x, y ... [m]: where the newest scan's returns are on the map."""
@@ -107,16 +110,22 @@ def _placed(scan: Scan, pose: np.ndarray[Any, np.dtype[np.float64]]) -> np.ndarr
     return np.stack([pose[0] + ranges[kept] * np.cos(angles), pose[1] + ranges[kept] * np.sin(angles)], axis=1)
 
 
-def _graph(drawing: Drawing) -> dict[str, Any]:
-    map_: Map = drawing.map
+def _graph(map_: Map, beside: Beside) -> dict[str, Any]:
+    """Lines from node to node where they are drawn; ``shift`` is how far [m] that is from where the robot is now."""
     chain, loops = map_.edges, map_.switchable_edges
     on = loops["switch"] >= SWITCH_ON
-    ends = np.stack([loops["i"], loops["j"]], axis=1).reshape(-1, 2)
+    drawn = np.isfinite(beside.shift[:, 0])
+
+    def lines(i: NDArray[np.uint64], j: NDArray[np.uint64]) -> Packed:
+        return pack(beside.ends(i, j)[drawn[i]], "i4")
+
     return {
-        "nodes": pack(map_.node_poses[:, :2], "f4"),
-        "chain": pack(np.stack([chain["i"], chain["j"]], axis=1).reshape(-1, 2), "i4"),
-        "closures": pack(ends[on], "i4"),
-        "undone": pack(ends[~on], "i4"),
+        "nodes": pack(map_.node_poses[:, :2] + beside.shift, "f4"),
+        "chain": lines(chain["i"], chain["j"]),
+        "closures": lines(loops["i"][on], loops["j"][on]),
+        "undone": lines(loops["i"][~on], loops["j"][~on]),
+        "captions": [{"text": text, "place": list(place)} for text, place in beside.captions],
+        "shift": np.nan_to_num(beside.shift[-1]).tolist() if len(map_) else [0.0, 0.0],
     }
 
 

@@ -3,7 +3,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
-#include <functional>
 #include <string_view>
 
 #include "frsm/table.hpp"
@@ -45,7 +44,8 @@ struct MatcherParams {
   double information_scale = 10.0;  ///< log-likelihood of one independent point; for 1.5 cm of range noise
   double min_curvature = 0.015;     ///< a direction constrained by less than this share of the points is degenerate
   double ambiguity_floor = 1.0;  ///< look for a second peak of at least this share of the best score; >= 1: do not look
-  int exhaustive_limit = 2000;   ///< largest number of shifts per heading that are all tried; above: branch and bound
+  int exhaustive_limit = 2000;   ///< largest number of shifts per heading that are all tried
+  int two_level_limit = 20000;   ///< up to so many, tiles of them are bounded first; above: branch and bound
 
   /// Where more shifts and headings than this are to be tried in all, tiles of them are bounded first, and so many of
   /// the tiles are searched; 0: the work is not bounded.
@@ -78,9 +78,6 @@ struct Match {
   /// True when the pose comes from the match and may be used: kOk and kDegenerate.
   bool usable() const { return status == Status::kOk || status == Status::kDegenerate; }
 };
-
-/// Is told, while a match is searched for, how many cells of tables were looked up since it was told last.
-using OnLookups = std::function<void(std::uint64_t)>;
 
 /// Correlative scan matcher: exhaustive search (or branch and bound, same result) on the lattice of the guess, then a
 /// continuous polish. Maximises  scale * N_eff * score(T) - 0.5 * |T - prior|^2.  Pure and re-entrant.

@@ -11,13 +11,14 @@
 namespace frsm {
 
 struct PeakParams {
-  double theta_step = 0.02;             ///< of the search grid [rad]
-  double floor = 0.3;                   ///< peaks of a lower score do not count, 0..1
-  double ratio = 0.7;                   ///< nor do those of less than this share of the best score
-  double apart_xy = 0.3;                ///< two poses this near along both axes [m] ...
-  double apart_theta = 0.3;             ///< ... and in heading [rad] are one peak
-  std::size_t max_peaks = 32;           ///< the search ends with so many
-  std::size_t max_expansions = 150000;  ///< or when so many squares of shifts were cut in four
+  double theta_step = 0.02;                      ///< of the search grid [rad]
+  double floor = 0.3;                            ///< peaks of a lower score do not count, 0..1
+  double ratio = 0.7;                            ///< nor do those of less than this share of the best score
+  double apart_xy = 0.3;                         ///< two poses this near along both axes [m] ...
+  double apart_theta = 0.3;                      ///< ... and in heading [rad] are one peak
+  std::size_t max_peaks = 32;                    ///< the search ends with so many
+  std::size_t max_expansions = 150000;           ///< or when so many squares of shifts were cut in four,
+  std::size_t max_expansions_to_first = 150000;  ///< or so many, and no peak was found
 
   /// Throws std::invalid_argument that names the field when a value makes no sense.
   void validate() const;

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace frsm {
 
 class BlockMaxima;
 class BoundPyramid;
+
+/// Is told, while a match is searched for, how many cells of tables were looked up since it was told last. Cells that
+/// are read side by side, and those of bounds while they are built, count as far as they cost as much as others.
+using OnLookups = std::function<void(std::uint64_t)>;
 
 struct TableParams {
   double cell = 0.02;     ///< side of a cell [m]
@@ -56,6 +61,10 @@ class Table {
   /// Throws std::length_error when the drawn area would exceed 2^28 cells; the table is then unchanged.
   void draw(const Points& world, const std::vector<Contour>& contours, const Pose& origin);
 
+  /// Makes room for points in an area [m], so that nothing is copied while they are drawn.
+  /// Throws std::length_error when it would exceed 2^28 cells; the table is then unchanged.
+  void reserve(const Point& low, const Point& high);
+
   /// Value of a cell of the lattice, 0 outside.
   std::uint8_t value(int ix, int iy) const;
 
@@ -76,9 +85,9 @@ class Table {
   TableView view() const;
 
   /// Upper bounds for branch and bound, built at the first call after a change. Thread-safe.
-  std::shared_ptr<const BoundPyramid> bounds() const;
+  std::shared_ptr<const BoundPyramid> bounds(const OnLookups& on_lookups = {}) const;
   /// Coarser ones that are built in a tenth of the time, likewise.
-  std::shared_ptr<const BlockMaxima> blocks() const;
+  std::shared_ptr<const BlockMaxima> blocks(const OnLookups& on_lookups = {}) const;
 
  private:
   void cover(int low_x, int low_y, int high_x, int high_y);

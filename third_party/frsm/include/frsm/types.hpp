@@ -56,4 +56,8 @@ bool is_finite(const Point& point);
 /// The points whose coordinates are finite and within the lattice's reach (|x|, |y| < 1e5 m), in their order.
 Points drop_invalid(const Points& points);
 
+/// The points within a distance [m] of the origin, in their order: what a table does not draw, as it is too far away,
+/// lies on nothing, and would only count as a miss.
+Points within(Points points, double radius);
+
 }  // namespace frsm

@@ -53,7 +53,7 @@ class Closures {
       element("p", { class: "key" }, element("i", { style: `background:${COLOURS.scans[0]}` }), `scan of node ${base} `, element("i", { style: `background:${COLOURS.scans[1]}` }), `scan of node ${moving} where the match put it`),
     );
     this.draw(base, moving, measured);
-    const origin = this.view.nodePose(base);
+    const origin = this.view.drawnPose(base);
     this.view.showScans([[base, origin, COLOURS.scans[0]], [moving, Pose.compose(origin, measured), COLOURS.scans[1]]]);
   }
 
@@ -61,7 +61,7 @@ class Closures {
     const [x, y, theta] = this.view.nodePose(node);
     this.details.replaceChildren(element("h3", {}, `Node ${node}`), element("p", {}, `At ${x.toFixed(3)} m, ${y.toFixed(3)} m, ${degrees(theta)}.`));
     this.draw(node, null, null);
-    this.view.showScans([[node, [x, y, theta], COLOURS.scans[0]]]);
+    this.view.showScans([[node, this.view.drawnPose(node), COLOURS.scans[0]]]);
   }
 
   // Both scans in the frame of the first.

@@ -44,6 +44,33 @@ class MapView {
     this.addTruth(); // a dashed line can only be added once it is known where the map looks
   }
 
+  // How far a node is drawn from where the map has it, for its part is not tied; not a number: it is not drawn.
+  shift(node) {
+    const { beside = null } = this.data; // none in a run of an earlier version
+    return beside === null || node < 0 ? [0, 0] : [beside.shift[2 * node], beside.shift[2 * node + 1]];
+  }
+
+  part(node) {
+    const { beside = null } = this.data;
+    return beside === null || node < 0 ? -1 : beside.part[node];
+  }
+
+  isDrawn(node) {
+    return !Number.isNaN(this.shift(node)[0]);
+  }
+
+  // Of a sample: the node that carries it, and where it is drawn.
+  carrier(sample) {
+    const { node } = this.data.samples;
+    return node === undefined ? -1 : node[sample];
+  }
+
+  samplePoint(sample) {
+    const poses = this.data.samples.pose;
+    const [dx, dy] = this.shift(this.carrier(sample));
+    return [poses[3 * sample + 1] + dy, poses[3 * sample] + dx];
+  }
+
   fit() {
     this.map.fitBounds(this.bounds.pad(0.02), { animate: false });
   }
@@ -65,6 +92,9 @@ class MapView {
     this.bounds = L.latLngBounds([[y, x], [y + grid.size[1] * grid.resolution, x + grid.size[0] * grid.resolution]]);
     const image = L.imageOverlay(`data:image/png;base64,${grid.png}`, this.bounds, { className: "grid", alt: "occupancy map" });
     this.add("walls", "#222", image, true);
+    const { beside = null } = this.data;
+    for (const { text, place } of beside === null ? [] : beside.captions)
+      L.tooltip({ permanent: true, direction: "right", className: "label" }).setLatLng([place[1], place[0]]).setContent(element("span", {}, text)).addTo(this.map);
   }
 
   // Rooms with their areas, and where the robot shall not go; a run of an earlier version has neither.
@@ -81,14 +111,18 @@ class MapView {
 
   // Runs of consecutive samples with one class each become lines of that class.
   runs(classes, count) {
-    const poses = this.data.samples.pose;
     const lines = Array.from({ length: count }, () => []);
+    let open = false; // whether the line to the sample before can go on
     for (let k = 1; k < classes.length; ++k) {
+      const [before, node] = [this.carrier(k - 1), this.carrier(k)];
+      if (this.part(before) !== this.part(node) || !this.isDrawn(before) || !this.isDrawn(node)) {
+        open = false;
+        continue;
+      }
       const lists = lines[classes[k]];
-      const last = lists.length ? lists[lists.length - 1] : null;
-      const point = [poses[3 * k + 1], poses[3 * k]];
-      if (classes[k] === classes[k - 1] && last !== null && k > 1) last.push(point);
-      else lists.push([[poses[3 * k - 2], poses[3 * k - 3]], point]);
+      if (open && classes[k] === classes[k - 1]) lists[lists.length - 1].push(this.samplePoint(k));
+      else lists.push([this.samplePoint(k - 1), this.samplePoint(k)]);
+      open = true;
     }
     return lines;
   }
@@ -113,18 +147,23 @@ class MapView {
   }
 
   nearestSample(latlng) {
-    const poses = this.data.samples.pose;
     let best = 0, least = Infinity;
-    for (let k = 0; k < poses.length / 3; ++k) {
-      const d = (poses[3 * k] - latlng.lng) ** 2 + (poses[3 * k + 1] - latlng.lat) ** 2;
+    for (let k = 0; k < this.data.samples.time.length; ++k) {
+      const [y, x] = this.samplePoint(k);
+      const d = (x - latlng.lng) ** 2 + (y - latlng.lat) ** 2;
       if (d < least) [best, least] = [k, d];
     }
     return best;
   }
 
   point(node) {
-    const poses = this.data.nodes.poses;
-    return [poses[3 * node + 1], poses[3 * node]];
+    const [x, y] = this.drawnPose(node);
+    return [y, x];
+  }
+
+  // From node to node; at the first one if they are of different parts; null if that is not drawn.
+  line(i, j) {
+    return this.isDrawn(i) ? [this.point(i), this.point(this.part(i) === this.part(j) ? j : i)] : null;
   }
 
   addEdges() {
@@ -132,7 +171,8 @@ class MapView {
     const lines = SIGMA_COLOURS.map(() => []);
     const odometry = [];
     for (let k = 0; k < sigma.length; ++k) {
-      const line = [this.point(ends[2 * k]), this.point(ends[2 * k + 1])];
+      const line = this.line(ends[2 * k], ends[2 * k + 1]);
+      if (line === null) continue;
       const above = SIGMA_LIMITS.filter((limit) => sigma[k] > limit).length;
       lines[above].push(line);
       if (kind[k] === 1) odometry.push(line);
@@ -148,7 +188,9 @@ class MapView {
     const groups = verdicts.map(() => L.layerGroup());
     for (let k = 0; k < verdict.length; ++k) {
       const colour = verdict[k] === 0 ? COLOURS.accepted : verdict[k] === 1 ? COLOURS.undone : COLOURS.rejected;
-      const line = L.polyline([this.point(ends[2 * k]), this.point(ends[2 * k + 1])], { color: colour, weight: 1.5, opacity: 0.8, bubblingMouseEvents: false });
+      const between = this.line(ends[2 * k], ends[2 * k + 1]);
+      if (between === null) continue;
+      const line = L.polyline(between, { color: colour, weight: 1.5, opacity: 0.8, bubblingMouseEvents: false });
       line.on("click", () => this.onClosure(k));
       groups[verdict[k]].addLayer(line);
     }
@@ -161,6 +203,7 @@ class MapView {
   addNodes() {
     const group = L.layerGroup();
     for (let k = 0; k < this.data.nodes.poses.length / 3; ++k) {
+      if (!this.isDrawn(k)) continue;
       const dot = L.circleMarker(this.point(k), { radius: 3, weight: 1, color: COLOURS.node, fillOpacity: 0.6, bubblingMouseEvents: false });
       dot.on("click", () => this.onNode(k));
       group.addLayer(dot);
@@ -216,9 +259,16 @@ class MapView {
     return Pose.at(this.data.nodes.poses, node);
   }
 
+  drawnPose(node) {
+    const [x, y, theta] = this.nodePose(node);
+    const [dx, dy] = this.shift(node);
+    return [x + dx, y + dy, theta];
+  }
+
   // Shows scans on the map: a list of [node, pose, colour].
   showScans(scans) {
     this.scans.clearLayers();
+    if (scans.some(([, pose]) => pose.some(Number.isNaN))) return; // of a part that is not drawn
     for (const [node, pose, colour] of scans)
       for (const [x, y] of this.scanPoints(node, pose))
         this.scans.addLayer(L.circleMarker([y, x], { radius: 2, stroke: false, fill: true, fillColor: colour, fillOpacity: 0.9, interactive: false }));
@@ -227,7 +277,9 @@ class MapView {
   }
 
   showRobot(sample) {
-    const [x, y, theta] = Pose.at(this.data.samples.pose, sample);
+    const theta = this.data.samples.pose[3 * sample + 2];
+    const [y, x] = this.samplePoint(sample);
+    if (Number.isNaN(x)) return;
     if (this.robot === null) {
       const arrow = element("div", { class: "arrow" });
       this.robot = L.marker([y, x], { icon: L.divIcon({ className: "robot", html: arrow, iconSize: [22, 22] }), interactive: false, keyboard: false }).addTo(this.map);

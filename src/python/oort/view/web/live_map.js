@@ -21,6 +21,7 @@ class LiveMap {
     this.bounds = null;
     this.follow = true;
     this.robot = null;
+    this.shift = [0, 0]; // of the robot on the drawing, while it drives on a part that is not tied
     this.groups = Object.fromEntries(LAYERS.map(([name, , on]) => [name, on ? L.layerGroup().addTo(this.map) : L.layerGroup()]));
     this.map.on("dragstart", () => this.setFollow(false));
     this.onFollow = () => {};
@@ -40,15 +41,19 @@ class LiveMap {
   clear() {
     for (const name of ["walls", "drive", "closures", "undone"]) this.groups[name].clearLayers();
     this.bounds = null;
+    this.shift = [0, 0];
   }
 
   // A new drawing: walls and graph.
-  show({ grid, nodes, chain, closures, undone }) {
+  show({ grid, nodes, chain, closures, undone, captions, shift }) {
     const first = this.bounds === null;
     this.clear();
     const [x, y] = grid.origin;
     this.bounds = L.latLngBounds([[y, x], [y + grid.size[1] * grid.resolution, x + grid.size[0] * grid.resolution]]);
     this.groups.walls.addLayer(L.imageOverlay(`data:image/png;base64,${grid.png}`, this.bounds, { className: "grid", alt: "occupancy map" }));
+    this.shift = shift;
+    for (const { text, place } of captions)
+      this.groups.walls.addLayer(L.tooltip({ permanent: true, direction: "right", className: "label" }).setLatLng([place[1], place[0]]).setContent(element("span", {}, text)));
     const lines = (ends) => Array.from({ length: ends.length / 2 }, (_, k) => [0, 1].map((side) => [nodes[2 * ends[2 * k + side] + 1], nodes[2 * ends[2 * k + side]]]));
     const draw = (name, ends, style) => ends.length && this.groups[name].addLayer(L.polyline(lines(ends), { interactive: false, ...style }));
     draw("drive", chain, { color: "#2b6cb0", weight: 2.5 });
@@ -64,7 +69,8 @@ class LiveMap {
       this.robot = null;
       return;
     }
-    const [x, y, theta] = pose;
+    const [dx, dy] = this.shift;
+    const [x, y, theta] = [pose[0] + dx, pose[1] + dy, pose[2]];
     if (this.robot === null) {
       this.arrow = element("div", { class: "arrow" });
       const icon = L.divIcon({ className: "robot", html: this.arrow, iconSize: [22, 22] });
@@ -73,7 +79,7 @@ class LiveMap {
     this.robot.setLatLng([y, x]);
     this.arrow.style.transform = `rotate(${-theta}rad)`;
     for (let k = 0; k < scan.length; k += 2)
-      this.groups.scan.addLayer(L.circleMarker([scan[k + 1], scan[k]], { radius: 2, stroke: false, fill: true, fillColor: "#d6336c", fillOpacity: 0.9, interactive: false }));
+      this.groups.scan.addLayer(L.circleMarker([scan[k + 1] + dy, scan[k] + dx], { radius: 2, stroke: false, fill: true, fillColor: "#d6336c", fillOpacity: 0.9, interactive: false }));
     if (this.follow && !this.map.getBounds().pad(-0.2).contains([y, x])) this.map.panTo([y, x], { animate: false });
   }
 

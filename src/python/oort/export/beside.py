@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-"""Loose parts of a map in its picture: beside what is tied, as where they lie on it is not known."""
+"""Loose parts of a map in pictures of it: beside what is tied, as where they lie on it is not known."""
 
 from dataclasses import dataclass
 
@@ -29,6 +29,10 @@ class Beside:
     """(N,) the number of each node's loose part, -1 of the main one"""
     captions: list[tuple[str, tuple[float, float]]]
     """texts and where they begin [m]"""
+
+    def ends(self, i: NDArray[np.uint64], j: NDArray[np.uint64]) -> NDArray[np.uint64]:
+        """(k, 2): the nodes between which to draw each edge; the first one twice if they are of different parts."""
+        return np.stack([i, np.where(self.part[i] == self.part[j], j, i)], axis=1).reshape(-1, 2)
 
 
 def set_beside(map_: Map, grid: OccupancyGrid, parameters: Parameters) -> Beside:

@@ -10,7 +10,7 @@ from PIL import Image
 from oort import Parameters, Session, read_parameters, render_map
 from oort.diagnosis import loose_parts
 from oort.export import write_picture
-from oort.offline.beside import set_beside
+from oort.export.beside import set_beside
 from oort.recording import Scan
 from oort.simulate import SimulationConfig, simulate_drive
 
