@@ -43,7 +43,7 @@ class ClosureTest : public ::testing::Test {
     map.graph.nodes[kQuery].pose = map.graph.nodes[kQuery].pose * kDisplacement;
     loop.candidate_search.knearest_neighbors = 1;
     loop.candidate_search.candidate_stride = 1;
-    loop.candidate_search.closest_allowed_id_threshold_small = static_cast<int>(kQuery - kCandidate);
+    loop.candidate_search.closest_allowed_id_threshold_small = way();
     // Everything passes, but for what a test sets.
     MatchFilterParameters& f = filter;
     f.close_node_hitpct_threshold = 0.0;
@@ -54,11 +54,12 @@ class ClosureTest : public ::testing::Test {
     set_far();
   }
 
-  /// The ids differ by closest_allowed_id_threshold_large at least, or not.
-  void set_far() { loop.candidate_search.closest_allowed_id_threshold_large = static_cast<int>(kQuery - kCandidate); }
-  void set_close() {
-    loop.candidate_search.closest_allowed_id_threshold_large = static_cast<int>(kQuery - kCandidate) + 1;
-  }
+  /// Of the trajectory between the two, in nodes at their usual spacing.
+  int way() const { return static_cast<int>(segments.travel_between(kCandidate, kQuery)); }
+
+  /// The two are apart by closest_allowed_id_threshold_large at least, or not.
+  void set_far() { loop.candidate_search.closest_allowed_id_threshold_large = way(); }
+  void set_close() { loop.candidate_search.closest_allowed_id_threshold_large = way() + 1; }
 
   std::vector<Closure> find_all() {
     LoopClosureBuilder builder(parameters);

@@ -54,8 +54,8 @@ TEST_F(PlaceWatchTest, NodesThatSeeThroughWallsAreSuspectFromTheFirstOn) {
   EXPECT_LE(*first, 48u);
 }
 
-TEST_F(PlaceWatchTest, AFewSuchNodesAreNone) {
-  EXPECT_EQ(suspect(55), std::nullopt);
+TEST_F(PlaceWatchTest, TwoSuchNodesAreNone) {
+  EXPECT_EQ(suspect(58), std::nullopt);
 }
 
 }  // namespace

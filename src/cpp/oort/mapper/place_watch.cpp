@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -99,10 +97,6 @@ void PlaceWatch::look(const Map& map, std::uint64_t node, WorkMeter* meter) {
     profile.compare(its_points, inverse(T_other_node), sum);
   }
   if (sum.compared < MapperTuning::kLeastCompared) return;
-  if (getenv("OORT_WATCH"))
-    fprintf(stderr, "WATCH %lu compared %d share %.3f neighbours %zu nearest %.2f\n", node, sum.compared,
-            static_cast<double>(sum.in_free) / sum.compared, neighbours.size(),
-            apart(map.graph.nodes[node].pose, map.graph.nodes[neighbours[0]].pose));
   seen_.push_back({node, static_cast<double>(sum.in_free) / sum.compared});
   if (seen_.size() > MapperTuning::kWatched) seen_.pop_front();
 }
