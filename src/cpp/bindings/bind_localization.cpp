@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -56,7 +57,7 @@ void bind_relocalizer(py::module_& m) {
       .def_property_readonly(
           "T_map_sensor", [](const Hypothesis& h) { return tuple_of(h.T_map_sensor); }, "Of the newest scan.")
       .def_property_readonly(
-          "covariance", [](const Hypothesis& h) { return h.covariance; },
+          "covariance", [](const Hypothesis& h) -> py::array_t<double> { return py::cast(h.covariance); },
           "(3, 3) of x, y, theta, along the axes of the map.")
       .def_property_readonly(
           "support", [](const Hypothesis& h) { return h.support.value(); },
@@ -135,8 +136,8 @@ void bind_localizer(py::module_& m) {
           "Where odometry's frame is on the map; None while searching.")
       .def_property_readonly(
           "covariance",
-          [](GuardedLocalizer& guard) {
-            return guard.with([](const Localizer& l) { return Eigen::Matrix3d(l.covariance()); });
+          [](GuardedLocalizer& guard) -> py::array_t<double> {
+            return py::cast(guard.with([](const Localizer& l) { return Eigen::Matrix3d(l.covariance()); }));
           },
           "(3, 3) of T_map_sensor, along the axes of the map.")
       .def_property_readonly("support", guarded(&Localizer::support), "How well the latest scan fitted, at most 1.")

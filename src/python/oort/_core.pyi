@@ -490,7 +490,7 @@ class Hypothesis:
     def counts(self) -> dict[str, int]:
         """What the support is made of."""
     @property
-    def covariance(self) -> Annotated[NDArray[np.float64], "[3, 3]"]:
+    def covariance(self) -> NDArray[np.float64]:
         """(3, 3) of x, y, theta, along the axes of the map."""
     @property
     def support(self) -> float:
@@ -563,7 +563,7 @@ class Localizer:
     def T_map_sensor(self) -> tuple[float, float, float] | None:
         """The sensor's pose at the latest scan; None while searching."""
     @property
-    def covariance(self) -> Annotated[NDArray[np.float64], "[3, 3]"]:
+    def covariance(self) -> NDArray[np.float64]:
         """(3, 3) of T_map_sensor, along the axes of the map."""
     @property
     def state(self) -> LocalizationState:
