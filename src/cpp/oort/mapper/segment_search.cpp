@@ -294,6 +294,7 @@ std::vector<NodeRange> SegmentSearch::most_doubtful_first(const Map& map, const 
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<NodeRange> sorted;
+  sorted.reserve(ranked.size());
   for (const auto& [doubt, segment] : ranked) sorted.push_back(segment);
   return sorted;
 }
