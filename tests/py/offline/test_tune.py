@@ -21,7 +21,7 @@ from oort.simulate import SimulationConfig, simulate_drive
 from oort.simulate.writers import write_drive
 
 _GRID = "incremental_graph_builder.frsm_matcher.meters_per_pixel"
-_BAD = {_GRID: 0.2, "incremental_graph_builder.frsm_matcher.max_search_range_xy": 0.01}
+_BAD = {_GRID: 0.3, "incremental_graph_builder.frsm_matcher.max_search_range_xy": 0.01}
 _CANDIDATES = "loop_closure_graph_builder.candidate_search.knearest_neighbors"
 _SEARCH = ["--search", f"{_GRID}=0.01..0.3", "--trials", "6", "--seed", "3"]
 
