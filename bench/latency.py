@@ -27,6 +27,7 @@ from oort import Parameters, Session, open_recording, read_parameters, save_map
 from oort.live import LiveSession
 from oort.live.listener import Listener
 from oort.live.snapshot import Snapshot
+from oort.report.stopwatch import without_garbage_pauses
 
 _DOCKING = 20.0  # [s] of the recording between calls
 
@@ -39,10 +40,11 @@ def measure(path: str, threaded: bool) -> tuple[list[float], str]:
     session = Session(parameters, recording.sensor_on_base)
     session.start()
     seconds = []
-    for scan in recording.scans():
-        started = time.thread_time()
-        session.add_scan(scan)
-        seconds.append(time.thread_time() - started)
+    with without_garbage_pauses():
+        for scan in recording.scans():
+            started = time.thread_time()
+            session.add_scan(scan)
+            seconds.append(time.thread_time() - started)
     session.stop()
     with tempfile.TemporaryDirectory() as folder:
         save_map(f"{folder}/map", session.map)

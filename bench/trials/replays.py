@@ -19,7 +19,7 @@ from oort.offline.schedule import TimedSchedule
 from oort.offline.trajectory import TrajectoryRecorder
 from oort.poses import Array, between, compose
 from oort.recording import Recording
-from oort.report.stopwatch import Stopwatch
+from oort.report.stopwatch import Stopwatch, without_garbage_pauses
 from oort.session import Session
 
 LIMIT = 5.0  # ms that a scan may cost outside the solver
@@ -47,6 +47,7 @@ class Replayed:
     """(n,) how well the place was known, as it was told right after each scan"""
 
 
+@without_garbage_pauses()
 def replay(
     recording: Recording, parameters: Parameters, events: Sequence[Event] = (), mark: float = math.inf
 ) -> Replayed:

@@ -255,10 +255,8 @@ void bind_calls(py::class_<Guarded<Mapper>>& c) {
       .def(
           "take_renumbering", [](Guarded<Mapper>& guard) { return guard.with(&renumbering_of); },
           "What became of the nodes, if the last scan, session or finish gave them other ids, as the map was reduced "
-          "to "
-          "the views that it needs: for each node that there was the node that it became or by which its place is "
-          "known "
-          "now (n,), and where it is seen from there (x, y, theta; n, 3). Else None. Tells it once.")
+          "to the views that it needs: for each node that there was the node that it became or by which its place is "
+          "known now (n,), and where it is seen from there (x, y, theta; n, 3). Else None. Tells it once.")
       .def("resume_from_paused", guarded(&Mapper::resume_from_paused),
            "The next scan makes a node whose link to the last one is very uncertain.")
       .def("finish", guarded(&Mapper::finish), "Brings the map to its final solution.")

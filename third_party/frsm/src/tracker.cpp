@@ -246,14 +246,14 @@ Tracker::Sector Tracker::sector_of(const Points& body) {
     const double range = std::hypot(p.x, p.y);
     if (range > 0.0) sum = {sum.x + p.x / range, sum.y + p.y / range};
   }
-  Sector view;
-  view.middle = bearing(sum);
+  Sector sector;
+  sector.middle = bearing(sum);
   for (const Point& p : body) {
-    const double angle = wrap(bearing(p) - view.middle);
-    view.right = std::min(view.right, angle);
-    view.left = std::max(view.left, angle);
+    const double angle = wrap(bearing(p) - sector.middle);
+    sector.right = std::min(sector.right, angle);
+    sector.left = std::max(sector.left, angle);
   }
-  return view;
+  return sector;
 }
 
 // A view that turns sees something new at one edge, and each new point would rather lie on the old map: the best pose

@@ -56,8 +56,9 @@ void GlobalSlam::begin_schedule() {
 
 void GlobalSlam::add(const NodeAddition& node) {
   not_looked_from_.push_back(map_.node_count());
-  if (node.begins_segment && !node.edges.empty())
+  if (node.begins_segment && !node.edges.empty()) {
     segment_search_.begin(map_.node_count(), is_unknown(node) ? Doubt::kAll : Doubt::kOdometry);
+  }
   map_.add(node);
 }
 

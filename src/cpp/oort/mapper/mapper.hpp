@@ -74,7 +74,7 @@ class Mapper {
   bool notify_docked();
 
   /// The next scan begins a new segment at about this pose of the map. A map that shows most of its places more often
-  /// than keep_views asks for is pruned first (maintenance/prune.hpp): see renumbering().
+  /// than keep_views asks for is pruned first (maintenance/prune.hpp): see take_renumbering().
   void begin_session(const Pose2& T_map_sensor);
 
   /// What became of the nodes, if the last scan, session or finish() gave them other ids: global SLAM reduced the map

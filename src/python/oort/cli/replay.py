@@ -28,6 +28,7 @@ from oort.offline.results import write_results
 from oort.parameters import read_parameters
 from oort.recording import Recording
 from oort.report.replay_report import format_table, format_troubles
+from oort.report.stopwatch import without_garbage_pauses
 from oort.saved_maps import open_map
 
 _ROOM_FOR_ENDINGS = len(".map_meta_capnp.new")  # [bytes]
@@ -66,7 +67,9 @@ def replay_to_folder(
     if not options.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
-    results = write_results(replay(recording, parameters, options), folder, map_path, truth)
+    with without_garbage_pauses():
+        drive = replay(recording, parameters, options)
+    results = write_results(drive, folder, map_path, truth)
     if not options.quiet:
         for note in results.report["notes"][len(recording.notes) :]:
             print(f"note: {note}", file=sys.stderr)
