@@ -138,8 +138,8 @@ class Inbox:
             if self._closed is not None:
                 item.result.set_exception(self._closed)
                 return item.result
+            self._calls.append(item)  # first: Ctrl-C may come between the two, see pop()
             self._items.append(item)
-            self._calls.append(item)
             self._changed.notify()
         return item.result
 
@@ -193,7 +193,8 @@ class Inbox:
         with self._changed:
             item = self._items.popleft()
             if isinstance(item, CallItem):
-                self._calls.popleft()
+                while self._calls.popleft() is not item:  # those before it were never queued: their callers were ended
+                    pass
             elif item in self._unresolved:
                 self._unresolved.remove(item)
 
