@@ -15,6 +15,7 @@
 namespace frsm {
 namespace {
 
+constexpr double kStepMargin = 1.1;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 struct Link {
@@ -30,9 +31,25 @@ struct Node {
 // (length, point that asks, partner): exact lexicographic order makes the result independent of the heap's insides.
 using Proposal = std::tuple<double, std::size_t, std::size_t>;
 
+double angle_between(const Point& a, const Point& b) {
+  return std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
+}
+
+// How far beams may be apart that are linked at any distance [rad]: a coarse laser's own step, with some room for a
+// scan that was taken while the sensor turned.
+double sparse_step(const Points& points, const ContourParams& params) {
+  if (points.size() < 2 || params.widest_beam_step <= params.max_beam_step) return params.max_beam_step;
+  std::vector<double> steps(points.size() - 1);
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) steps[k] = angle_between(points[k], points[k + 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return std::clamp(kStepMargin * *middle, params.max_beam_step, params.widest_beam_step);
+}
+
 class Linker {
  public:
-  Linker(const Points& points, const ContourParams& params) : points_(points), params_(params), nodes_(points.size()) {}
+  Linker(const Points& points, const ContourParams& params)
+      : points_(points), params_(params), beam_step_(sparse_step(points, params)), nodes_(points.size()) {}
 
   std::vector<Contour> run() {
     for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -82,8 +99,8 @@ class Linker {
     if (p + 1 != q && q + 1 != p) return false;
     const Point& a = points_[p];
     const Point& b = points_[q];
-    const double between_beams = std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
-    if (between_beams > params_.max_beam_step) return false;
+    const double between_beams = angle_between(a, b);
+    if (between_beams > beam_step_) return false;
     const double range_a = std::hypot(a.x, a.y);
     const double range_b = std::hypot(b.x, b.y);
     return std::abs(range_a - range_b) <= params_.max_beam_slope * between_beams * std::min(range_a, range_b);
@@ -117,6 +134,7 @@ class Linker {
 
   const Points& points_;
   const ContourParams& params_;
+  const double beam_step_;
   std::vector<Node> nodes_;
   std::priority_queue<Proposal, std::vector<Proposal>, std::greater<>> queue_;
 };
@@ -155,6 +173,7 @@ void ContourParams::validate() const {
   check(min_distance_for_ratio >= 0.0, "ContourParams.min_distance_for_ratio", "must not be negative");
   check(max_distance_without_ratio >= 0.0, "ContourParams.max_distance_without_ratio", "must not be negative");
   check(max_beam_step >= 0.0, "ContourParams.max_beam_step", "must not be negative");
+  check(widest_beam_step >= 0.0, "ContourParams.widest_beam_step", "must not be negative");
   check(max_beam_slope >= 0.0, "ContourParams.max_beam_slope", "must not be negative");
   check(search_range >= 1, "ContourParams.search_range", "must be at least 1");
 }

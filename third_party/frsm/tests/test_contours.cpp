@@ -73,6 +73,23 @@ TEST(Contours, FarWallOfCoarseBeamsIsOneChain) {
   EXPECT_EQ(extract_contours(coarse, params).size(), coarse.size());
 }
 
+TEST(Contours, ACoarseLasersOwnStepLinksAFarWall) {
+  ContourParams params = ContourParams::urg();
+  params.max_beam_step = 0.02;
+  std::mt19937 random(3);
+  const test::Scene wall = {{{20.0, -8.0}, {20.0, 8.0}}};
+  const Points coarse = test::scan(wall, {}, {61, test::kPi, 30.0, 0.02}, random);  // 3 degrees, 1 m apart
+  EXPECT_EQ(extract_contours(coarse, params).size(), coarse.size());
+  params.widest_beam_step = 0.08;
+  EXPECT_EQ(extract_contours(coarse, params).size(), 1U);
+  // Of a finer laser a gap stays one, and so do beams that are farther apart than the widest step.
+  Points fine = test::scan(wall, {}, {181, test::kPi, 30.0, 0.02}, random);
+  fine.erase(fine.begin() + static_cast<std::ptrdiff_t>(fine.size() / 2));
+  EXPECT_EQ(extract_contours(fine, params).size(), 2U);
+  const Points coarsest = test::scan(wall, {}, {31, test::kPi, 30.0, 0.02}, random);
+  EXPECT_EQ(extract_contours(coarsest, params).size(), coarsest.size());
+}
+
 TEST(Contours, EmptyAndSinglePoint) {
   EXPECT_TRUE(extract_contours({}, ContourParams::sick()).empty());
   const auto contours = extract_contours({{1.0, 1.0}}, ContourParams::sick());

@@ -17,6 +17,7 @@ frsm::TrackerParams tracker_params(const FrsmMatcherParameters& p, bool use_odom
   params.table = table_params(p);
   params.contours = frsm::ContourParams::urg();
   params.contours.max_beam_step = LocalSlamTuning::kMaxBeamStep;
+  params.contours.widest_beam_step = LocalSlamTuning::kWidestBeamStep;
   params.matcher = matcher_params(p);
   params.add = p.key_scan_distance > 0.0 ? frsm::AddRule{} : frsm::AddRule::by_hits(p.add_scan_hit_thresh);
   if (p.key_scan_distance > 0.0) {

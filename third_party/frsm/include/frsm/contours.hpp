@@ -18,6 +18,7 @@ struct ContourParams {
   double min_distance_for_ratio = 0.08;     ///< the ratio counts only beside links at least this long
   double max_distance_without_ratio = 0.4;  ///< longest link beside a shorter (or no) one
   double max_beam_step = 0.0;               ///< [rad] neighbours whose beams are nearer may be linked at any distance
+  double widest_beam_step = 0.0;            ///< [rad] or than the scan's own step, if that is at most this
   double max_beam_slope = 1.0;              ///< if their ranges differ by at most this share of their beams' distance
   int search_range = 4;                     ///< how many indices away a partner may be
 
