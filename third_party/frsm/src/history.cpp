@@ -9,29 +9,32 @@
 namespace frsm {
 
 History::History(const TableParams& params, int max_scans)
-    : older_{Table(params), 0}, younger_{Table(params), 0}, max_scans_(max_scans) {
+    : older_{Table(params)}, younger_{Table(params)}, max_scans_(max_scans) {
   check(max_scans >= 2, "History.max_scans", "must be at least 2");
 }
 
-void History::add(const Points& world, const std::vector<Contour>& contours, const Pose& origin) {
-  older_.table.draw(world, contours, origin);
-  ++older_.scans;
-  if (2 * older_.scans > max_scans_) {  // the younger begins when the older is half full
-    younger_.table.draw(world, contours, origin);
-    ++younger_.scans;
-  }
-  if (older_.scans >= max_scans_) {
+void History::add(const Points& world, const std::vector<Contour>& contours, const Pose& origin, bool is_sparse) {
+  const auto draw = [&](Layer& layer) {
+    layer.table.draw(world, contours, origin);
+    ++layer.scans;
+    layer.halves += is_sparse ? 1 : 2;
+  };
+  draw(older_);
+  if (older_.halves > max_scans_) draw(younger_);  // the younger begins when the older is half full
+  if (older_.halves >= 2 * max_scans_) {
     std::swap(older_, younger_);
-    younger_.table.clear();
-    younger_.scans = 0;
+    clear(younger_);
   }
 }
 
 void History::clear() {
-  for (Layer* layer : {&older_, &younger_}) {
-    layer->table.clear();
-    layer->scans = 0;
-  }
+  clear(older_);
+  clear(younger_);
+}
+
+void History::clear(Layer& layer) {
+  layer.table.clear();
+  layer.scans = layer.halves = 0;
 }
 
 }  // namespace frsm

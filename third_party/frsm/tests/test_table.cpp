@@ -236,6 +236,16 @@ TEST(History, HoldsBetweenHalfAndAllOfTheLastScans) {
   EXPECT_EQ(history.num_scans(), 0);
 }
 
+TEST(History, OfSparseScansTwiceAsManyAreKept) {
+  History history({}, 8);
+  for (int scan = 0; scan < 80; ++scan) {
+    history.add({{0.4 * scan, 0.0}}, {{0}}, {0.4 * scan, 0.0, 0.0}, true);
+    if (scan + 1 < 16) continue;
+    EXPECT_GE(history.num_scans(), 8);
+    EXPECT_LT(history.num_scans(), 16);
+  }
+}
+
 TEST(History, EqualsATableDrawnAfresh) {
   History history({}, 6);
   for (unsigned i = 0; i < 15; ++i) {

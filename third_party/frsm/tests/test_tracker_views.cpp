@@ -70,6 +70,25 @@ TEST(Tracker, SearchesNoFartherThanItMay) {
   }
 }
 
+// What comes into view stands 7 cm beside where the known walls would go on, near enough to be drawn to them: the match
+// must not turn for it.
+TEST(Tracker, WhatIsNewToAScanFarAwayDoesNotTurnIt) {
+  const test::Scene scene = {{{-3.0, 1.5}, {3.7, 1.5}},    {{3.7, 1.57}, {9.0, 1.57}}, {{-3.0, -1.5}, {3.7, -1.5}},
+                             {{3.7, -1.43}, {9.0, -1.43}}, {{1.6, 0.9}, {2.0, 0.9}},   {{2.6, -0.8}, {2.6, -0.5}}};
+  const Pose end{1.2, 0.0, 0.0};
+  double turned = 0.0;
+  for (unsigned seed = 1; seed <= 16; ++seed) {
+    std::mt19937 random(seed);
+    Tracker tracker;
+    tracker.track(test::scan(scene, {}, {181, kPi, 4.0, 0.01}, random), 0.0, Motion{});
+    const Motion odometry{end, Eigen::Vector3d(2.5e-3, 2.5e-3, 2.5e-3).asDiagonal()};
+    EXPECT_TRUE(tracker.track(test::scan(scene, end, {181, kPi, 4.0, 0.01}, random), 1.0, odometry).usable());
+    EXPECT_LT(distance(tracker.pose(), end), 0.05);
+    turned += tracker.pose().theta / 16.0;
+  }
+  EXPECT_LT(std::abs(turned), 0.001);  // [rad]; 0.0013 with all points
+}
+
 // Half a coarse sensor's view, with stretches that see one wall only: far better than the odometry, which is 0.6 rad
 // off.
 TEST(Tracker, FollowsANarrowShortView) {

@@ -22,7 +22,8 @@ void declare_search(const Section& v, FrsmMatcherParameters& p) {
   v(p.theta_resolution, "theta_resolution", {0.01, "rad", {0.001, 0.2}},
     "Angular step of the matcher's search. Documented as unused; used here.");
   v(p.max_num_scans, "max_num_scans", {20, "scans", {2, 1000}},
-    "Latest scans that make the matcher's local map: the map holds between half as many and as many.");
+    "Latest scans that make the matcher's local map: the map holds between half as many and as many, and twice that of "
+    "scans that are far apart.");
   v(p.initial_search_range_xy, "initial_search_range_xy", {0.01, "m", {0.0, 5.0}},
     "Half width of the search around the odometry's guess; more where odometry is less certain.");
   v(p.initial_search_range_theta, "initial_search_range_theta", {0.01, "rad", {0.0, 3.15}},

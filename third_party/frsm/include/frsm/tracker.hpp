@@ -35,7 +35,8 @@ struct TrackerParams {
   ContourParams contours;
   MatcherParams matcher;
   AddRule add;
-  int max_num_scans = 60;                   ///< history: the local map holds the last K/2 to K scans that joined (>= 2)
+  int max_num_scans =
+      60;  ///< history: the local map holds the last K/2 to K scans that joined (>= 2), of sparse ones twice as many
   double initial_search_range_xy = 0.1;     ///< smallest half window [m]
   double max_search_range_xy = 0.25;        ///< largest half window [m], at more than 2 Hz without alternatives
   double initial_search_range_theta = 0.1;  ///< [rad]
@@ -118,6 +119,9 @@ class Tracker {
   Match try_match(const Points& body, const Prior& prior, double widen) const;
   bool is_poor(const Match& match) const;
   bool tells(const Match& match) const;
+  bool is_far(const Pose& pose) const;
+  bool is_known(const Point& world) const;
+  void match_by_known(const Points& points, const Prior& prior, Match& match) const;
   void judge_by_known(const Points& body, Match& match) const;
   static bool outweighs(const Match& other, const Match& best, const Prior& expected);
   static bool is_better(const Match& other, const Match& best);
