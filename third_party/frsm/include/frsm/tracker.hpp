@@ -35,8 +35,7 @@ struct TrackerParams {
   ContourParams contours;
   MatcherParams matcher;
   AddRule add;
-  int max_num_scans =
-      60;  ///< history: the local map holds the last K/2 to K scans that joined (>= 2), of sparse ones twice as many
+  int max_num_scans = 60;                   ///< K >= 2: see History
   double initial_search_range_xy = 0.1;     ///< smallest half window [m]
   double max_search_range_xy = 0.25;        ///< largest half window [m], at more than 2 Hz without alternatives
   double initial_search_range_theta = 0.1;  ///< [rad]
