@@ -46,8 +46,8 @@ struct LocalSlamTuning {
   /// 1 degree at most. Undone, a wall 20 m away is dots 0.35 m apart, and of fr-clinic 66 % of the scans are matched
   /// instead of 95.
   static constexpr double kMaxBeamStep = 0.02;
-  /// The same of a laser with coarser steps, up to this. Undone, of edmonton with every second beam 125 of 340 scans are
-  /// matched instead of 275.
+  /// The same of a laser with coarser steps, up to this. Undone, of edmonton with every second beam 125 of 340 scans
+  /// are matched instead of 275.
   static constexpr double kWidestBeamStep = 0.08;
 
   // Without odometry: half widths of the search about where the last motion leads,
