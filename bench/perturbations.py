@@ -3,12 +3,14 @@
 """How firmly a log's map stands: the same drive with changes that should do no harm, one after the other.
 
     .venv/bin/python bench/perturbations.py [--logs NAME ...] [--only WORD ...] [--without-odometry] [--keep DIR]
+    .venv/bin/python bench/perturbations.py --logs acapulco edmonton belgioioso --runs 12
 
-Variants are those of trials/perturbed.py. Logs have relations, or a truth beside them; of one without, the error is how
-far its poses are from those of the unchanged log (RMS), whose map is to be looked at. Poses of scans that a variant
-leaves out are filled in from those of the unchanged log, seen from the last scan before. A variant is whole if its
-error is at most twice that of the unchanged log. Of logs with relations it must be 0.15 m at most, too, and a thinned
-one may have as much in any case; without a truth it is 0.5 m.
+Variants are those of trials/perturbed.py; --runs instead makes runs with other noise and another first scan. Logs have
+relations, or a truth beside them; of one without, the error is how far its poses are from those of the unchanged log
+(RMS), whose map is to be looked at. Poses of scans that a variant leaves out are filled in from those of the unchanged
+log, seen from the last scan before. A variant is whole if its error is at most twice that of the unchanged log. Of logs
+with relations it must be 0.15 m at most, too, and a thinned one may have as much in any case; without a truth it is
+0.5 m.
 """
 
 import argparse
@@ -29,7 +31,7 @@ from oort.poses import Array, between, compose
 from oort.recording import open_recording
 from trials.datasets import datasets
 from trials.jobs import Figures
-from trials.perturbed import VARIANTS, Variant
+from trials.perturbed import VARIANTS, Variant, chance_runs
 from trials.replays import Replayed, counts, replay
 from trials.tables import print_table
 from trials.workers import Failure, run_all
@@ -47,15 +49,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--logs", nargs="+", default=["fr079", "intel", "mit-csail"], metavar="NAME")
     parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="only variants with it in their name")
+    parser.add_argument("--runs", type=int, default=0, metavar="N", help="only by chance different, instead of these")
     parser.add_argument("--max-range", type=float, metavar="M", help="drop readings from there on")
     parser.add_argument("--without-odometry", action="store_true")
     parser.add_argument("--params", help="another parameter file")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="leave results.json there")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="variants at once")
     arguments = parser.parse_args()
-    variants = [v for v in VARIANTS[1:] if not arguments.only or any(w in v.name for w in arguments.only)]
+    of_all = chance_runs(arguments.runs) if arguments.runs else VARIANTS[1:]
+    variants = [v for v in of_all if not arguments.only or any(w in v.name for w in arguments.only)]
     results = {log: run_log(log, variants, arguments) for log in arguments.logs}
-    print_tables(results)
+    print_tables(results, (VARIANTS[0], *variants))
     if arguments.keep:
         arguments.keep.mkdir(parents=True, exist_ok=True)
         (arguments.keep / "results.json").write_text(json.dumps(results, indent=1) + "\n")
@@ -173,8 +177,8 @@ def tell(log: str, name: str, f: Figures) -> None:
     )
 
 
-def print_tables(results: dict[str, dict[str, Figures]]) -> None:
-    """Errors of all variants, and how many are whole."""
+def print_tables(results: dict[str, dict[str, Figures]], variants: Sequence[Variant]) -> None:
+    """Errors of all variants, their median and worst, and how many are whole."""
 
     def cell(log: str, name: str) -> str:
         if name not in results[log]:
@@ -183,11 +187,12 @@ def print_tables(results: dict[str, dict[str, Figures]]) -> None:
         text = f"{f['error']:.3f} m, {f['degrees']:.2f}°"
         return text if is_whole(f, unchanged) else f"**{text}**"
 
-    names = [v.name for v in VARIANTS if any(v.name in rows for rows in results.values())]
+    names = [v.name for v in variants if any(v.name in rows for rows in results.values())]
     print_table(("variant", *results), {name: [cell(log, name) for log in results] for name in names})
     for log, rows in results.items():
         whole = sum(is_whole(f, rows["as it is"]) for f in rows.values())
-        print(f"{log}: {whole} of {len(rows)} whole")
+        errors = [f["error"] for f in rows.values()]
+        print(f"{log}: {whole} of {len(rows)} whole, median {np.median(errors):.3f} m, worst {max(errors):.3f}")
 
 
 if __name__ == "__main__":

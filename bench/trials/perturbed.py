@@ -70,9 +70,9 @@ def _late(seconds: float) -> Change:
     return lambda scans: [scan for scan in scans if scan.time - scans[0].time >= seconds]
 
 
-def _noise(sigma: float) -> Change:
+def _noise(sigma: float, seed: int = 1) -> Change:
     def change(scans: Sequence[Scan]) -> list[Scan]:
-        random = np.random.default_rng(1)
+        random = np.random.default_rng(seed)
         return [
             _with(scan, ranges=scan.ranges + random.normal(0.0, sigma, len(scan.ranges)).astype(np.float32))
             for scan in scans
@@ -179,3 +179,13 @@ VARIANTS = (
     Variant("each 0.5 m, a second apart", _stamped_by_second(_scan_per(0.5)), is_thinned=True),
     Variant("each 1 m, a second apart", _stamped_by_second(_scan_per(1.0)), is_thinned=True),
 )
+
+
+def chance_runs(count: int) -> tuple[Variant, ...]:
+    """The recording with 5 mm of noise, each time another, begun up to 19 scans later: what single figures hide."""
+
+    def run(seed: int) -> Variant:
+        first = int(np.random.default_rng(seed).integers(20))
+        return Variant(f"run {seed}, from scan {first}", lambda scans: _noise(0.005, seed)(scans[first:]))
+
+    return tuple(run(seed) for seed in range(count))
