@@ -26,6 +26,7 @@ from oort.offline.trajectory import TrajectoryRecorder
 from oort.parameters import read_parameters
 from oort.poses import Array, between, compose
 from oort.recording import Scan
+from oort.report.stopwatch import without_garbage_pauses
 from oort.simulate import Drive, SimulationConfig, simulate_drive
 from trials.drives import recording_of
 from trials.jobs import ate_of
@@ -136,6 +137,7 @@ def true_places(drive: Drive) -> dict[str, list[float]]:
     return {f"place/{k}": T_map_sensor[k].tolist() for k in named_scans(drive)}
 
 
+@without_garbage_pauses()
 def _drive(
     session: Session, recorder: TrajectoryRecorder, drive: Drive, scans: Iterable[Scan], name_places: bool
 ) -> float:
