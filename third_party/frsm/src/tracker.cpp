@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -42,16 +41,6 @@ constexpr int kTellingHits = 4;  // times the fewest points that are matched
 // is matched once more, within this of its pose, without that. Looked at on three sparse logs of Radish.
 constexpr double kFar = 2.0;
 constexpr Window kNearby{0.08, 0.08, 0.04};
-// A view this wide turns without bias; of a narrower one this much of its edge is left out beside what is new, unless
-// too little would be left.
-constexpr double kWideView = 2.6;    // [rad]
-constexpr double kEdge = 0.03;       // [rad]
-constexpr double kLeastTurn = 0.02;  // [rad]
-constexpr double kLeastShare = 0.6;
-
-double bearing(const Point& p) {
-  return std::atan2(p.y, p.x);
-}
 
 Eigen::Matrix3d diagonal(double sigma_xy, double sigma_theta) {
   const Eigen::Vector3d variances(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_theta * sigma_theta);
@@ -143,7 +132,7 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
     if (seen && ++rejected_ >= params_.max_rejected_scans) {  // a blind moment says nothing against the map
       ++restarts_;
       history_.clear();
-      views_.clear();
+      seen_.clear();
       return start(body, time, expected);
     }
   }
@@ -156,7 +145,7 @@ Match Tracker::track(const Points& body, double time, const std::optional<Motion
 void Tracker::reset(const Pose& pose) {
   check(is_finite(pose), "the pose", "is not finite");
   history_.clear();
-  views_.clear();
+  seen_.clear();
   pending_.reset();
   velocity_.clear();
   drift_.setZero();
@@ -202,10 +191,8 @@ void Tracker::join_pending() {
   pending_.reset();
   const bool is_sparse = !history_.table().empty() && is_far(scan.pose);
   history_.add(transform(scan.pose, scan.body), extract_contours(scan.body, params_.contours), scan.pose, is_sparse);
-  views_.emplace_back(scan.body, scan.pose);
-  while (views_.size() > static_cast<std::size_t>(history_.num_scans())) views_.pop_front();
+  seen_.add(scan.body, scan.pose, static_cast<std::size_t>(history_.num_scans()));
   last_added_ = scan.pose;
-  last_seen_ = sector_of(scan.body);
   ++added_scans_;
 }
 
@@ -245,42 +232,12 @@ Window Tracker::window(const Prior& prior, double scale) const {
           half(2, params_.initial_search_range_theta, params_.max_search_range_theta)};
 }
 
-// A sensor may look anywhere, backwards too: bearings are told from the middle of what it sees.
-Tracker::Sector Tracker::sector_of(const Points& body) {
-  Point sum{0.0, 0.0};
-  for (const Point& p : body) {
-    const double range = std::hypot(p.x, p.y);
-    if (range > 0.0) sum = {sum.x + p.x / range, sum.y + p.y / range};
-  }
-  Sector sector;
-  sector.middle = bearing(sum);
-  for (const Point& p : body) {
-    const double angle = wrap(bearing(p) - sector.middle);
-    sector.right = std::min(sector.right, angle);
-    sector.left = std::max(sector.left, angle);
-  }
-  return sector;
-}
-
 // A view that turns sees something new at one edge, and each new point would rather lie on the old map: the best pose
 // turns too little, always the same way. So points beyond what the last scan of the map saw are left out.
-Points Tracker::without_new_edge(const Points& body, const Prior& prior) const {
-  const double turn = wrap(prior.mean.theta - last_added_.theta);
-  Points points = drop_invalid(body);
-  if (last_seen_.left - last_seen_.right > kWideView || std::abs(turn) < kLeastTurn) return points;
-  const auto is_new = [&](const Point& p) {
-    const double angle = wrap(bearing(p) - last_seen_.middle);
-    return turn > 0.0 ? angle > last_seen_.left - turn - kEdge : angle < last_seen_.right - turn + kEdge;
-  };
-  Points old = points;
-  old.erase(std::remove_if(old.begin(), old.end(), is_new), old.end());
-  const bool enough = static_cast<int>(old.size()) >= params_.matcher.min_points &&
-                      static_cast<double>(old.size()) >= kLeastShare * static_cast<double>(points.size());
-  return enough ? old : points;
-}
-
 Match Tracker::try_match(const Points& body, const Prior& prior, double widen) const {
-  const Points points = without_new_edge(body, prior);
+  const double turn = wrap(prior.mean.theta - last_added_.theta);
+  const auto least = static_cast<std::size_t>(params_.matcher.min_points);
+  const Points points = seen_.without_new_edge(drop_invalid(body), turn, least);
   Match match = matcher_.match(history_.table(), points, prior.mean, window(prior, widen), &prior);
   match_by_known(points, prior, match);
   judge_by_known(points, match);
@@ -293,19 +250,12 @@ bool Tracker::is_far(const Pose& pose) const {
          std::abs(wrap(pose.theta - last_added_.theta)) > kFar * params_.add.key_angle;
 }
 
-// Whether a scan of the local map could have seen what is there.
-bool Tracker::is_known(const Point& world) const {
-  return std::any_of(views_.begin(), views_.end(), [&](const View& view) { return view.covers(world); });
-}
-
 // Each new point would rather lie on an old line, too, which turns the match where more is new on one side. On the
 // sparse logs of Radish headings over ten scans err by 0.75 degrees (RMS) instead of 0.96, and by over 3 in 0.4 %
 // instead of 1.8.
 void Tracker::match_by_known(const Points& points, const Prior& prior, Match& match) const {
   if (!match.usable() || !is_far(match.pose)) return;
-  Points known;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(known),
-               [&](const Point& p) { return is_known(match.pose * p); });
+  const Points known = seen_.covered(points, match.pose);
   if (known.size() == points.size() || static_cast<int>(known.size()) < kTellingHits * params_.matcher.min_points)
     return;
   const Match again = matcher_.match(history_.table(), known, match.pose, kNearby, &prior);
@@ -370,11 +320,11 @@ void Tracker::judge_by_known(const Points& points, Match& match) const {
   const Table& table = history_.table();
   int all = 0, known = 0, hits = 0;
   double sum = 0.0;
-  for (const Point& p : drop_invalid(points)) {
+  for (const Point& p : points) {
     if (std::hypot(p.x, p.y) > params_.table.radius) continue;
     ++all;
     const Point world = match.pose * p;
-    if (!is_known(world)) {
+    if (!seen_.covers(world)) {
       sum += kUnknownValue;
       continue;
     }

@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <vector>
 
 #include "frsm/contours.hpp"
 #include "frsm/history.hpp"
 #include "frsm/matcher.hpp"
+#include "frsm/seen_space.hpp"
 #include "frsm/table.hpp"
 #include "frsm/velocity.hpp"
-#include "frsm/view.hpp"
 
 namespace frsm {
 
@@ -104,14 +103,7 @@ class Tracker {
     Points body;
     Pose pose;
   };
-  struct Sector {
-    double middle = 0.0;  // the mean bearing [rad]
-    double right = 0.0;   // its edges, seen from there [rad]
-    double left = 0.0;
-  };
-  static Sector sector_of(const Points& body);
   void join_pending();
-  Points without_new_edge(const Points& body, const Prior& prior) const;
   Prior expect(double time, const std::optional<Motion>& odometry) const;
   Pose predict(double time) const;
   Window window(const Prior& prior, double scale) const;
@@ -119,7 +111,6 @@ class Tracker {
   bool is_poor(const Match& match) const;
   bool tells(const Match& match) const;
   bool is_far(const Pose& pose) const;
-  bool is_known(const Point& world) const;
   void match_by_known(const Points& points, const Prior& prior, Match& match) const;
   void judge_by_known(const Points& body, Match& match) const;
   static bool outweighs(const Match& other, const Match& best, const Prior& expected);
@@ -132,10 +123,9 @@ class Tracker {
   TrackerParams params_;
   Matcher matcher_;
   History history_;
-  std::deque<View> views_;  // of the scans of the local map
+  SeenSpace seen_;  // by the scans of the local map
   Pose pose_;
   Pose last_added_;
-  Sector last_seen_;  // of the returns of the scan that joined last
   Eigen::Matrix3d drift_ =
       Eigen::Matrix3d::Zero();      // covariance of the motion since the last usable match, table's axes
   std::optional<Pending> pending_;  // joins the local map at the next track() unless overruled
