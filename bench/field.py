@@ -229,8 +229,8 @@ def run_row(row: Row, folder: Path) -> tuple[bool, str]:
 
 def main(argv: Sequence[str]) -> int:
     """Prints the table; the exit status is 1 if a row fails."""
-    if not CASES.is_dir():
-        print("OORT_CASES must name the folder with the cases", file=sys.stderr)
+    if not (CASES / "rplidar_sweep").is_dir():
+        print("OORT_CASES must name the folder of the cases of the field", file=sys.stderr)
         return 2
     chosen = [row for row in rows() if not argv or row.case in argv]
     failed = 0

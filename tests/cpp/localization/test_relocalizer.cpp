@@ -66,6 +66,29 @@ TEST(Relocalizer, RefusesToChooseBetweenTwoRoomsThatLookAlike) {
   }
 }
 
+// What hides a wall from one scan does so for all of its beams: alone it must lead by more than scans from several
+// places.
+TEST(Relocalizer, OneScanAloneMustLeadByMore) {
+  const double min_lead = Parameters{}.localization.relocalizer.min_lead;
+  const Pose2 T_first_second{12.0, 1.0, 0.5};
+  int told_apart_by_two_alone = 0;
+  for (double width = 0.5; width < 2.0; width += 0.1) {
+    testing::World second = make_room();  // the rooms differ by a shelf
+    testing::add_outline({{0.9, 0.9}, {0.9 + width, 0.9}, {0.9 + width, 1.1}, {0.9, 1.1}}, second);
+    const testing::World world = testing::joined(make_room(), testing::moved(second, T_first_second));
+    std::vector<Pose2> views = views_of_room();
+    for (const Pose2& view : views_of_room(T_first_second)) views.push_back(view);
+    const Relocalizer relocalizer_of_both = relocalizer(reference_of(world, views));
+    const PlacedScan scan = placed(world, T_first_second * kPlaces[2]);
+    const Relocalization by_one = relocalizer_of_both.find({scan}), by_two = relocalizer_of_both.find({scan, scan});
+    ASSERT_NEAR(by_one.lead(), by_two.lead(), 1e-9);
+    EXPECT_EQ(by_one.found(), by_one.lead() >= 1.5 * min_lead) << by_one.lead();
+    EXPECT_EQ(by_two.found(), by_two.lead() >= min_lead) << by_two.lead();
+    told_apart_by_two_alone += by_two.found() && !by_one.found();
+  }
+  EXPECT_GT(told_apart_by_two_alone, 0);
+}
+
 TEST(Relocalizer, RefusesPlacesThatAreNotOnTheMap) {
   const Relocalizer relocalizer_of_room = relocalizer(reference_of(make_room(), views_of_room()));
   testing::World other;

@@ -68,16 +68,21 @@ void Localizer::start_at(const Pose2& T_map_sensor, const Eigen::Matrix3d& covar
   start_searching();
   T_map_sensor_ = T_map_sensor;
   covariance_ = covariance;
+  was_relied_on_ = true;
   T_odom_sensor_.reset();
   state_ = LocalizationState::kUncertain;
 }
 
 void Localizer::start_searching() {
+  forget_pose();
+  views_.clear();
+}
+
+void Localizer::forget_pose() {
   T_map_sensor_.reset();
-  is_seen_ = false;
+  is_seen_ = was_relied_on_ = false;
   rival_.reset();
   probation_ = 0.0;
-  views_.clear();
   doubtful_travel_ = 0.0;
   doubtful_scans_ = 0;
   state_ = LocalizationState::kSearching;
@@ -91,6 +96,7 @@ LocalizationState Localizer::add_scan(const LaserScan& scan, const Pose2& T_odom
   const bool sees = count_returns(now.cloud) >= static_cast<std::size_t>(min_points_);
   if (T_map_sensor_ && sees) follow(now.cloud);
   state_ = judge();
+  if (state_ == LocalizationState::kTracking) was_relied_on_ = true;
   const bool is_new_view = sees && views_.add(now);
   if (state_ != LocalizationState::kTracking && is_new_view) search(now);
   return state_;
@@ -190,6 +196,8 @@ void Localizer::search(const PlacedScan& scan) {
   const Relocalization found = relocalizer_.find(views_.latest(static_cast<std::size_t>(kept_parameters_.max_scans)));
   if (!found.found()) {
     ++statistics_.search_rejections[found.rejection];
+    // An answer that was never relied on came of fewer views: with more of them another place is as good.
+    if (T_map_sensor_ && !was_relied_on_ && found.lead() < kept_parameters_.min_lead) forget_pose();
     return;
   }
   if (!T_map_sensor_ || !is_expected(*found.best)) {

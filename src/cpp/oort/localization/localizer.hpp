@@ -80,6 +80,7 @@ class Localizer {
     double way;
   };
 
+  void forget_pose();
   void predict(const Pose2& T_odom_sensor);
   void follow(const PointCloud& cloud);
   std::optional<Hypothesis> match(const PointCloud& cloud, Rejection& rejection);
@@ -106,6 +107,7 @@ class Localizer {
   std::optional<Pose2> T_map_sensor_;
   std::optional<Pose2> T_odom_sensor_;  // at the latest scan
   bool is_seen_ = false;                // at least one scan fitted there
+  bool was_relied_on_ = false;          // it was told to the localiser, or tracked since a search found it
   double probation_ = 0.0;  // [m] of travel on which scans must still fit before a search's answer is relied on
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Identity();
   double support_ = 0.0;

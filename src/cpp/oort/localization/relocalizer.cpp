@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "oort/geometry/errors.hpp"
@@ -104,7 +105,7 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans, const Sea
     });
     if (second != found.end()) result.second = *second;
   }
-  result.rejection = judge(result, effort, peaks.complete);
+  result.rejection = judge(result, scans.size(), effort, peaks.complete);
   return result;
 }
 
@@ -142,14 +143,19 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   return found;
 }
 
-Rejection Relocalizer::judge(const Relocalization& result, const SearchEffort& effort, bool complete) const {
+double Relocalization::lead() const {
+  if (!best || !second) return std::numeric_limits<double>::infinity();
+  return best->support.value() - second->support.value();
+}
+
+Rejection Relocalizer::judge(const Relocalization& result, std::size_t scans, const SearchEffort& effort,
+                             bool complete) const {
   if (!result.best) return complete ? Rejection::kNoMatch : Rejection::kAmbiguous;
   const double best = result.best->support.value();
   if (!complete) return Rejection::kAmbiguous;
   if (best < std::min(parameters_.min_support, effort.min_support)) return Rejection::kSearchLowSupport;
-  if (result.second && best - result.second->support.value() < parameters_.min_lead) {
-    return Rejection::kAmbiguous;
-  }
+  const double doubt = scans == 1 ? LocalizationTuning::kLoneLead : 1.0;
+  if (result.lead() < doubt * parameters_.min_lead) return Rejection::kAmbiguous;
   const Eigen::Matrix2d position = result.best->covariance.topLeftCorner<2, 2>();
   const double widest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(position).eigenvalues().maxCoeff();
   const bool precise = std::sqrt(widest) <= parameters_.max_position_deviation &&

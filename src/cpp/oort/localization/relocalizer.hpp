@@ -38,6 +38,8 @@ struct Relocalization {
   bool stands_out = true;            ///< whether the search came upon any place that scores enough
 
   bool found() const { return rejection == Rejection::kNone; }
+  /// By how much the best fits better than the next place, as a difference of support; infinity without another.
+  double lead() const;
 };
 
 /// What a search may cost at most.
@@ -70,7 +72,7 @@ class Relocalizer {
   std::vector<Hypothesis> hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
                                      const SearchEffort& effort, const frsm::OnLookups& on_lookups,
                                      frsm::Peaks& peaks) const;
-  Rejection judge(const Relocalization& result, const SearchEffort& effort, bool complete) const;
+  Rejection judge(const Relocalization& result, std::size_t scans, const SearchEffort& effort, bool complete) const;
 
   std::shared_ptr<const ReferenceMap> map_;
   RelocalizerParameters parameters_;

@@ -52,15 +52,16 @@ struct LocalizationTuning {
   static constexpr int kFewScans = 3;              ///< doubtful scans from which on the angle counts
 
   // The search of the whole map.
-  static constexpr double kSearchVoxel = 0.1;     ///< [m] of the points that are looked for everywhere
-  static constexpr double kMatchVoxel = 0.05;     ///< [m] of those that are matched around each peak
-  static constexpr double kMinScore = 0.01;       ///< that a peak can be asked for
-  static constexpr double kPeakSpacing = 0.3;     ///< [m] and [rad] between two places
-  static constexpr double kFineReach = 0.1;       ///< [m] around a peak
-  static constexpr double kMinThetaStep = 0.01;   ///< [rad]
-  static constexpr double kMaxThetaStep = 0.05;   ///< [rad]
-  static constexpr double kCoarseCell = 0.05;     ///< [m]
-  static constexpr double kCoarseSigma = 0.08;    ///< [m]; a pose half a cell and half a step off still scores
+  static constexpr double kLoneLead = 1.5;       ///< times min_lead, of one scan: who stands before it hides much of it
+  static constexpr double kSearchVoxel = 0.1;    ///< [m] of the points that are looked for everywhere
+  static constexpr double kMatchVoxel = 0.05;    ///< [m] of those that are matched around each peak
+  static constexpr double kMinScore = 0.01;      ///< that a peak can be asked for
+  static constexpr double kPeakSpacing = 0.3;    ///< [m] and [rad] between two places
+  static constexpr double kFineReach = 0.1;      ///< [m] around a peak
+  static constexpr double kMinThetaStep = 0.01;  ///< [rad]
+  static constexpr double kMaxThetaStep = 0.05;  ///< [rad]
+  static constexpr double kCoarseCell = 0.05;    ///< [m]
+  static constexpr double kCoarseSigma = 0.08;   ///< [m]; a pose half a cell and half a step off still scores
   static constexpr double kBlockedMargin = 0.25;  ///< [m] before a return where a wall may be the one that it is on
   static constexpr double kBlockedWeight = 1.0;   ///< of a return behind a wall against one that fits, in the support
   static constexpr double kTurnedWeight = 1.0;    ///< of a return on a surface that faces the other way, the same
