@@ -15,23 +15,39 @@
 namespace oort {
 namespace {
 
+double size_of(const Eigen::Matrix3d& covariance) {
+  return covariance(0, 0) + covariance(1, 1) +
+         GraphTuning::kHeadingLever * GraphTuning::kHeadingLever * covariance(2, 2);
+}
+
 /// Where a node is as seen from another one, with covariance along the axes of that one.
 struct Relative {
   Pose2 T;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  /// Covariance, along its own axes, of the node at an end as seen from its neighbour on the way to the other end; none
+  /// where scan matching did not place them relative to each other.
+  std::optional<Eigen::Matrix3d> begin, end;
 };
 
+/// What two edges by scan matching that meet in a node have in common, as a covariance of that node along its axes.
+Eigen::Matrix3d shared_covariance(const Eigen::Matrix3d& from_before, const Eigen::Matrix3d& from_after) {
+  // Twice their parallel sum: of equal ones it is the same, and never more than their correlation allows.
+  const Eigen::Matrix3d mean = 2.0 * from_before * (from_before + from_after).ldlt().solve(from_after);
+  const double most = LifelongTuning::kMatchSigma * LifelongTuning::kMatchSigma;
+  return LifelongTuning::kMatchShare * std::min(1.0, most / size_of(mean)) * mean;
+}
+
 Relative operator*(const Relative& a_b, const Relative& b_c) {
-  return {a_b.T * b_c.T, compound_covariance(a_b.T, a_b.covariance, b_c.T, b_c.covariance)};
+  Relative a_c{a_b.T * b_c.T, compound_covariance(a_b.T, a_b.covariance, b_c.T, b_c.covariance), a_b.begin, b_c.end};
+  if (a_b.end && b_c.begin) {  // b's error is in both with opposite signs: counted twice, it is not there at all
+    const Eigen::Matrix3d shared = rotate_covariance(shared_covariance(*a_b.end, *b_c.begin), a_b.T.theta);
+    a_c.covariance -= 2.0 * compound_covariance(a_b.T, shared, b_c.T, Eigen::Matrix3d::Zero());
+  }
+  return a_c;
 }
 
 Relative inverse(const Relative& a_b) {
-  return {inverse(a_b.T), inverse_covariance(a_b.T, a_b.covariance)};
-}
-
-double size_of(const Eigen::Matrix3d& covariance) {
-  return covariance(0, 0) + covariance(1, 1) +
-         GraphTuning::kHeadingLever * GraphTuning::kHeadingLever * covariance(2, 2);
+  return {inverse(a_b.T), inverse_covariance(a_b.T, a_b.covariance), a_b.end, a_b.begin};
 }
 
 /// What links a node to an earlier one of its trajectory.
@@ -41,8 +57,18 @@ struct Step {
   Relative from_node;
 };
 
+Relative relative_of(const Constraint& constraint) {
+  Relative i_j{constraint.T_i_j, constraint.covariance, {}, {}};
+  if (constraint.type == ConstraintType::kLaser) {
+    const Relative j_i = inverse(i_j);
+    i_j.begin = rotate_covariance(j_i.covariance, i_j.T.theta);
+    i_j.end = rotate_covariance(i_j.covariance, j_i.T.theta);
+  }
+  return i_j;
+}
+
 Step step_of(const Edge& edge) {
-  const Relative i_j{edge.constraint.T_i_j, edge.constraint.covariance};
+  const Relative i_j = relative_of(edge.constraint);
   return edge.i < edge.j ? Step{&edge, edge.i, i_j} : Step{&edge, edge.j, inverse(i_j)};
 }
 
@@ -195,7 +221,7 @@ class Reduction {
     if (size_of(i.node_carried.covariance) + size_of(j.node_carried.covariance) > kMaxVariance) return false;
     if (is_near(i.node, j.node)) return false;
     Relative carried =
-        i.node_carried * Relative{edge.constraint.T_i_j, edge.constraint.covariance} * inverse(j.node_carried);
+        i.node_carried * Relative{edge.constraint.T_i_j, edge.constraint.covariance, {}, {}} * inverse(j.node_carried);
     std::uint64_t from = i.node, to = j.node;
     if ((from < to) != candidate.is_dock) {  // the direction tells a dock closure from others
       std::swap(from, to);
