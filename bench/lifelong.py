@@ -5,8 +5,9 @@
     .venv/bin/python bench/lifelong.py [--days N] [--first DAY] [--home SEED] [--out DIR]
 
 Each day has another way, another person and other noise; from --moves on furniture stands elsewhere and doors stand at
-other angles every so many days. Prints a row for each day and writes days.json and days.png to --out, with the last
-map. Each day runs in a process of its own, so that its memory is its own.
+other angles every so many days. Prints a row for each day and writes days.json and days.png to --out, with the first
+map and the last; in the end, how a robot that drives on the day after is found and followed on these two. Each day
+runs in a process of its own, so that its memory is its own.
 """
 
 import argparse
@@ -20,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from oort import Map, Session, render_map
+from oort import Map, Session, load_map, render_map, save_map
 from oort.export.chart import Panel, write_chart
 from oort.offline.trajectory import TrajectoryRecorder
 from oort.parameters import read_parameters
@@ -28,9 +29,11 @@ from oort.poses import Array, between, compose
 from oort.recording import Scan
 from oort.report.stopwatch import without_garbage_pauses
 from oort.simulate import Drive, SimulationConfig, simulate_drive
+from relocalisation import find_anywhere
 from trials.drives import recording_of
 from trials.jobs import ate_of
 
+STARTS = 80  # of searches for the robot in the end
 PLACES = 8  # named on the first day, spread over its drive
 NEAR = 0.075  # m between an occupied cell's middle and a surface that it stands for: a cell and a half
 SPACING = 0.05  # m between points of the true surfaces
@@ -91,6 +94,8 @@ def run_day(day: int, drive: Drive, folder: Path, compare: bool) -> Day:
     cpu = time.process_time() - cpu
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     map_ = session.map
+    if day == 0:
+        save_map(str(folder / "first"), map_)
     places = {f"{space}/{id}": compose(map_.node_poses[node], pose) for space, id, node, pose in map_.locations}
     if day == 0:
         (folder / "places.json").write_text(json.dumps({name: pose.tolist() for name, pose in places.items()}))
@@ -241,6 +246,9 @@ def main() -> None:
         child.join()
         print(_row(list(asdict(days[-1]).values())), flush=True)
         (arguments.out / "days.json").write_text(json.dumps([asdict(d) for d in days], indent=1) + "\n")
+    drive = simulate_day(arguments.home, arguments.days, arguments.moves, arguments.every, arguments.minutes)
+    for name in ("first", f"map{(arguments.days - 1) % 2}"):
+        print(name, find_anywhere(load_map(str(arguments.out / name)), drive, read_parameters(), STARTS), flush=True)
     numbers = [float(d.day) for d in days]
     panels = [_panel(name, numbers, [float(getattr(d, name)) for d in days]) for name in names[1:]]
     write_chart(arguments.out / "days.png", panels)

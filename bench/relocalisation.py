@@ -24,7 +24,7 @@ import numpy as np
 
 from accuracy import describe
 from oort import Map, Parameters, Session, load_map, read_parameters, save_map
-from oort.localization import Localizer, PlacedScan, ReferenceMap, Relocalizer, start_covariance
+from oort.localization import Localizer, PlacedScan, ReferenceMap, Relocalization, Relocalizer, start_covariance
 from oort.poses import Array, between, compose, wrap_angle
 from oort.recording import Scan
 from oort.simulate import Drive
@@ -127,7 +127,8 @@ def _placed(drive: Drive, index: int) -> PlacedScan:
     )  # fmt: skip
 
 
-def _off(truth: Array, found: Sequence[float]) -> tuple[float, float]:
+def off_by(truth: Array, found: Sequence[float] | Array) -> tuple[float, float]:
+    """Distance [m] and angle [rad] between two poses."""
     x, y, turn = between(truth, found).tolist()
     return float(np.hypot(x, y)), abs(turn)
 
@@ -143,22 +144,59 @@ def queries(homes: Homes, row: str, seed: int, count: int) -> Iterator[dict[str,
     relocalizer = Relocalizer(ReferenceMap(map_, homes.parameters), homes.parameters)
     rng = np.random.Generator(np.random.PCG64([seed, 77]))
     for first in rng.choice(len(drive.scan_times) - 60, count, replace=False).tolist():
-        views, milliseconds, result = _views(drive, first, row, homes.parameters), [], None
-        lengths = [len(views)] if row == "consecutive scans" else range(1, len(views) + 1)
-        for length in lengths:
-            started = time.process_time()
-            result = relocalizer.find([_placed(drive, index) for index in views[:length]])
-            milliseconds.append(1e3 * (time.process_time() - started))
-            if result.found:
-                break
-        assert result is not None
+        views, at_once = _views(drive, first, row, homes.parameters), row == "consecutive scans"
+        result, last, milliseconds = ask(relocalizer, drive, views, at_once)
         figures: dict[str, Any] = {"seed": seed, "first": first, "rejection": result.rejection, "ms": milliseconds}
         if result.found and result.best is not None:
-            T_sensor = compose(drive.T_map_base[views[length - 1]], drive.T_base_sensor)
+            T_sensor = compose(drive.T_map_base[last], drive.T_base_sensor)
             figures["support"] = result.best.support
-            figures["off"] = _off(truth.on_map(T_sensor), result.best.T_map_sensor)
-            figures["off_truth"] = _off(truth.aligned(T_sensor), result.best.T_map_sensor)
+            figures["off"] = off_by(truth.on_map(T_sensor), result.best.T_map_sensor)
+            figures["off_truth"] = off_by(truth.aligned(T_sensor), result.best.T_map_sensor)
         yield figures
+
+
+def ask(
+    relocalizer: Relocalizer, drive: Drive, views: Sequence[int], at_once: bool
+) -> tuple[Relocalization, int, list[float]]:
+    """Asks with all views, or with one more each time until there is an answer: that, the last view asked with and the
+    CPU milliseconds of each search."""
+    milliseconds = []
+    for length in [len(views)] if at_once else range(1, len(views) + 1):
+        started = time.process_time()
+        result = relocalizer.find([_placed(drive, index) for index in views[:length]])
+        milliseconds.append(1e3 * (time.process_time() - started))
+        if result.found:
+            break
+    return result, views[length - 1], milliseconds
+
+
+def find_anywhere(map_: Map, drive: Drive, parameters: Parameters, count: int) -> dict[str, float]:
+    """How a robot is found on a map from random starts of a drive in the map's own frame, and followed on it from the
+    dock: counts, and errors [m] against the truth without an alignment."""
+    reference = ReferenceMap(map_, parameters)
+    relocalizer = Relocalizer(reference, parameters)
+    off = []
+    for first in np.random.default_rng(5).choice(len(drive.scan_times) - 60, count, replace=False).tolist():
+        result, last, _ = ask(relocalizer, drive, _views(drive, first, "same home", parameters), False)
+        if result.found and result.best is not None:
+            T_sensor = compose(drive.T_map_base[last], drive.T_base_sensor)
+            off.append(off_by(T_sensor, result.best.T_map_sensor))
+    recording = recording_of(drive, "found")
+    localizer = Localizer(reference, parameters, recording.sensor_on_base)
+    localizer.start_at((0.0, 0.0, 0.0), start_covariance())
+    followed = []
+    for index, scan in enumerate(recording.scans()):
+        _add(localizer, scan)
+        if localizer.T_map_odom is not None:
+            followed.append(off_by(drive.T_map_base[index], compose(localizer.T_map_odom, scan.odometry))[0])
+    return {
+        "starts": count,
+        "found": len(off),
+        "wrong": sum(1 for metres, turn in off if metres > WRONG or turn > WRONG_HEADING),
+        "off_m": float(np.median([metres for metres, _ in off])),
+        "followed_rmse_m": float(np.sqrt(np.mean(np.square(followed)))),
+        "followed_most_m": max(followed),
+    }
 
 
 def summarise_queries(found: list[dict[str, Any]], none_is_right: bool) -> list[str]:
@@ -211,7 +249,7 @@ def _follow_figures(
     fit = _alignment(poses[:, :2], true[:, :2])
     errors = np.hypot(*(compose(fit, poses)[:, :2] - true[:, :2]).T)
     sensors = compose(true, drive.T_base_sensor), compose(poses, drive.T_base_sensor)
-    off = [_off(truth.on_map(where), found) for where, found in zip(*sensors, strict=True)]
+    off = [off_by(truth.on_map(where), found) for where, found in zip(*sensors, strict=True)]
     silent = sum(
         state == "tracking" and bool(metres > SILENT or turn > SILENT_HEADING)
         for (_, _, state), (metres, turn) in zip(known, off, strict=True)
