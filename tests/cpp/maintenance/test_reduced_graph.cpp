@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "oort/graph/graph_check.hpp"
+
 namespace oort {
 namespace {
 
@@ -119,6 +121,29 @@ TEST(ReducedGraph, WhatWasFoldedBeforeIsStillAsUnsureAsItErrs) {
   for (const std::uint64_t first_stride : {2, 4, 8}) {
     EXPECT_NEAR(mean_nees(chains, 32, first_stride), 3.0, 0.7) << first_stride;
   }
+}
+
+// Whatever covariances a map may have: one that is folded can be saved and loaded again.
+TEST(ReducedGraph, AFoldedEdgeIsSound) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> exponent(-9.0, 6.0), angle(-3.0, 3.0);
+  int folded = 0;
+  for (int run = 0; run < 3000; ++run) {
+    Map map = Chains(ConstraintType::kLaser, 0.33).make(2 + run % 5);
+    for (Edge& edge : map.graph.edges) {
+      const Eigen::Vector3d sigmas(std::pow(10.0, exponent(random)), std::pow(10.0, exponent(random)),
+                                   std::pow(10.0, std::min(0.0, exponent(random))));
+      const Eigen::Matrix3d diagonal = sigmas.cwiseAbs2().asDiagonal();
+      edge.constraint.covariance = rotate_covariance(diagonal, angle(random));
+      if (find_covariance_defect(edge.constraint.covariance)) edge.constraint.covariance = diagonal;
+    }
+    const Graph graph = reduced(map, map.graph.edges.size()).graph;
+    for (const Edge& edge : graph.edges) {
+      EXPECT_EQ(find_covariance_defect(edge.constraint.covariance), std::nullopt) << edge.constraint.covariance;
+      ++folded;
+    }
+  }
+  EXPECT_EQ(folded, 3000);
 }
 
 }  // namespace

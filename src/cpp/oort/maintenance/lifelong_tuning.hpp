@@ -43,6 +43,9 @@ struct LifelongTuning {
   /// [m] Standard deviation of such an edge (a radian counting as a metre): the median is 0.008 to 0.010 m in those
   /// homes, fr079 and Intel. What nodes of an edge that was folded before bring in is no more.
   static constexpr double kMatchSigma = 0.01;
+  /// Of the largest variance of a folded edge what the least one is at least, where rounding left none: well above
+  /// double precision, far below what scans and odometry give.
+  static constexpr double kLeastOfVariances = 1e-12;
 
   // Closures.
   /// [m] Standard deviation of the path over which a closure is carried to a node that is kept.

@@ -3,12 +3,14 @@
 #include "oort/maintenance/reduced_graph.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "oort/geometry/chi_square.hpp"
+#include "oort/graph/graph_check.hpp"
 #include "oort/graph/tuning.hpp"
 #include "oort/maintenance/lifelong_tuning.hpp"
 
@@ -48,6 +50,18 @@ Relative operator*(const Relative& a_b, const Relative& b_c) {
 
 Relative inverse(const Relative& a_b) {
   return {inverse(a_b.T), inverse_covariance(a_b.T, a_b.covariance), a_b.end, a_b.begin};
+}
+
+/// The covariance itself, or one near it that a map may have: variances of very different size that are put together
+/// may leave, by rounding, what is not symmetric or not positive, and large ones more than a map takes.
+Eigen::Matrix3d sound(const Eigen::Matrix3d& covariance) {
+  if (!find_covariance_defect(covariance)) return covariance;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(0.5 * (covariance + covariance.transpose()));
+  const double most = std::min(axes.eigenvalues().maxCoeff(), 0.5 * GraphTuning::kMaxVariance);
+  const Eigen::Vector3d variances =
+      axes.eigenvalues().cwiseMin(most).cwiseMax(LifelongTuning::kLeastOfVariances * most);
+  const Eigen::Matrix3d wider = axes.eigenvectors() * variances.asDiagonal() * axes.eigenvectors().transpose();
+  return 0.5 * (wider + wider.transpose());
 }
 
 /// What links a node to an earlier one of its trajectory.
@@ -164,11 +178,12 @@ class Reduction {
         continue;  // the edge is there already
       }
       result_.T_parent_node[node] = settled(map_.graph, at, node, from_node);
-      folded_.emplace(node, Edge{0,
-                                 at,
-                                 node,
-                                 {map_.clouds[node].time, result_.new_id[node], result_.T_parent_node[node],
-                                  from_node.covariance, matched ? ConstraintType::kLaser : ConstraintType::kOdometry}});
+      folded_.emplace(
+          node, Edge{0,
+                     at,
+                     node,
+                     {map_.clouds[node].time, result_.new_id[node], result_.T_parent_node[node],
+                      sound(from_node.covariance), matched ? ConstraintType::kLaser : ConstraintType::kOdometry}});
     }
     for (Edge edge : map_.graph.edges) {
       if (!kept_[edge.i] || !kept_[edge.j]) continue;
@@ -229,8 +244,8 @@ class Reduction {
     }
     edge.i = from;
     edge.j = to;
-    edge.constraint.covariance = carried.covariance;
     edge.constraint.T_i_j = settled(map_.graph, from, to, carried);
+    edge.constraint.covariance = sound(carried.covariance);
     return true;
   }
 
