@@ -26,7 +26,6 @@ from accuracy import describe
 from oort import Map, Parameters, Session, load_map, read_parameters, save_map
 from oort.localization import Localizer, PlacedScan, ReferenceMap, Relocalization, Relocalizer, start_covariance
 from oort.poses import Array, between, compose, wrap_angle
-from oort.recording import Scan
 from oort.simulate import Drive
 from trials.drives import DriveStore, Recipe, recording_of
 from trials.tables import print_table
@@ -181,14 +180,8 @@ def find_anywhere(map_: Map, drive: Drive, parameters: Parameters, count: int) -
         if result.found and result.best is not None:
             T_sensor = compose(drive.T_map_base[last], drive.T_base_sensor)
             off.append(off_by(T_sensor, result.best.T_map_sensor))
-    recording = recording_of(drive, "found")
-    localizer = Localizer(reference, parameters, recording.sensor_on_base)
-    localizer.start_at((0.0, 0.0, 0.0), start_covariance())
-    followed = []
-    for index, scan in enumerate(recording.scans()):
-        _add(localizer, scan)
-        if localizer.T_map_odom is not None:
-            followed.append(off_by(drive.T_map_base[index], compose(localizer.T_map_odom, scan.odometry))[0])
+    localizer = _from_the_dock(reference, drive, parameters)
+    followed = [off_by(drive.T_map_base[index], pose)[0] for index, pose, _ in _follow(localizer, drive, [])]
     return {
         "starts": count,
         "found": len(off),
@@ -222,23 +215,35 @@ def follow(homes: Homes, row: str, seed: int) -> dict[str, Any]:
     base, other = _recipe(seed, row)
     map_, drive = homes.map(base), homes.drive(other)
     truth = Truth(map_, homes.drive(base))
-    mount: tuple[float, float, float] = tuple(drive.T_base_sensor.tolist())
-    localizer = Localizer(ReferenceMap(map_, homes.parameters), homes.parameters, mount)
+    reference = ReferenceMap(map_, homes.parameters)
     if row == "from the dock":
-        localizer.start_at((0.0, 0.0, 0.0), start_covariance())  # the map's origin is its first sensor pose
-    known: list[tuple[int, Array, str]] = []
-    milliseconds = []
-    for index, scan in enumerate(recording_of(drive, other.name).scans()):
-        started = time.process_time()
-        _add(localizer, scan)
-        milliseconds.append(1e3 * (time.process_time() - started))
-        if localizer.T_map_odom is not None:
-            known.append((index, compose(localizer.T_map_odom, scan.odometry), localizer.state))
+        localizer = _from_the_dock(reference, drive, homes.parameters)
+    else:
+        localizer = Localizer(reference, homes.parameters, _mount(drive))
+    milliseconds: list[float] = []
+    known = list(_follow(localizer, drive, milliseconds))
     return _follow_figures(seed, drive, truth, known, milliseconds) | {"jumps": localizer.statistics["jumps"]}
 
 
-def _add(localizer: Localizer, scan: Scan) -> None:
-    localizer.add_scan(scan, scan.odometry)
+def _mount(drive: Drive) -> tuple[float, float, float]:
+    x, y, theta = drive.T_base_sensor.tolist()
+    return x, y, theta
+
+
+def _from_the_dock(reference: ReferenceMap, drive: Drive, parameters: Parameters) -> Localizer:
+    localizer = Localizer(reference, parameters, _mount(drive))
+    localizer.start_at((0.0, 0.0, 0.0), start_covariance())  # the map's origin is its first sensor pose
+    return localizer
+
+
+def _follow(localizer: Localizer, drive: Drive, milliseconds: list[float]) -> Iterator[tuple[int, Array, str]]:
+    """Index, pose of the base and state of each scan at which there is a pose; adds each scan's CPU milliseconds."""
+    for index, scan in enumerate(recording_of(drive, "followed").scans()):
+        started = time.process_time()
+        localizer.add_scan(scan, scan.odometry)
+        milliseconds.append(1e3 * (time.process_time() - started))
+        if localizer.T_map_odom is not None:
+            yield index, compose(localizer.T_map_odom, scan.odometry), localizer.state
 
 
 def _follow_figures(
