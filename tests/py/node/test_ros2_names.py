@@ -129,6 +129,7 @@ def test_qualities(peer: RclpyPeer, tmp_path: Path) -> None:
         (offered,) = peer.node.get_publishers_info_by_topic("/map")
         assert offered.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
         assert offered.qos_profile.reliability == ReliabilityPolicy.RELIABLE
+        until(lambda: peer.node.count_subscribers("/scan"), "scan")  # is found on its own
         (asked,) = peer.node.get_subscriptions_info_by_topic("/scan")
         assert asked.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT
 
