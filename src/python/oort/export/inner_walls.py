@@ -16,7 +16,7 @@ from oort.export.wall_frame import CELL, Array, Box, WallFrame, covered, oriente
 ALIGNED = 0.03
 """[m] between pieces of one face"""
 
-# Fitted on the simulated homes 1 to 18 and tried on 19 to 42 (docs/export.md).
+# Fitted on the simulated homes 1 to 18 and 200 to 259, and tried on others (docs/export.md).
 _OPEN, _WALL, _THROUGH = 0, 1, 2  # cells of a profile along a wall
 _THIN, _THICK = 0.07, 0.32  # [m] between the faces of an inner wall; an open door is thinner
 _DOORWAY = 2.2  # [m] the widest opening in a wall that still parts two rooms
@@ -24,24 +24,34 @@ _SEEN = 0.3  # share of the strip beside a face that must be free
 _USUAL = 0.015  # [m] between the thicknesses of inner walls of one kind
 _EVIDENCE = 0.8  # [m] of faces back to back; of a wall as thick as most, of its whole line
 _STUB = 0.1  # [m] that a wall must go on beyond another on both sides to go through it
-_GOES_ON = 0.3  # [m] of wall beyond one that goes through it: less is a doorway of the next room
-_FACED = 0.25  # share of a wall between two that go through it, with its doorways, of which a face was seen
+_GOES_ON = 0.15  # [m] of wall beyond one that goes through it: less is a doorway of the next room
+_FREE_BESIDE = 0.1  # [m] from the faces of a wall to where cells must be free for both to be seen
+_INSET = 0.02  # [m] into it, from where on they must not be
+_STUBS = 0.3  # [m] of such cells along a line that are a wall
+_FACED = 0.2  # share of a wall between two that go through it, with its doorways, of which a face was seen
 
 # Columns of pairs: from, to across the wall; begin, end of both faces; length seen from both sides, and where that is.
 _LOW, _HIGH, _BEGIN, _END, _BOTH, _FROM, _TO = range(7)
 
 
-def inner_walls(across: Array, up: Array, frame: WallFrame) -> list[tuple[bool, Box]]:
-    """Whether each runs along y, and its rectangle; from walls along x and along y, (k, 3) as axis_walls() has them."""
+def inner_walls(across: Array, up: Array, frame: WallFrame) -> tuple[list[tuple[bool, Box]], float]:
+    """Whether each runs along y, and its rectangle; then the thickness of most, 0 if unknown.
+
+    From walls along x and along y, (k, 3) as axis_walls() has them.
+    """
     faces = {False: across, True: up}
     pairs = {along_y: _pairs(walls, frame, along_y) for along_y, walls in faces.items()}
     usual = _usual_thickness(np.concatenate(list(pairs.values())))
-    known = {along_y: found[_are_walls(found, usual)] for along_y, found in pairs.items()}
-    return [
+    known = {
+        along_y: np.concatenate([found[_are_walls(found, usual)], _stubs(faces[along_y], frame, along_y, usual)])
+        for along_y, found in pairs.items()
+    }
+    closed = [
         (along_y, box)
         for along_y, walls in faces.items()
         for box in _closed(walls, known[along_y], known[not along_y], frame, along_y)
     ]
+    return closed, usual
 
 
 def _pairs(walls: Array, frame: WallFrame, along_y: bool) -> Array:
@@ -80,6 +90,27 @@ def _are_walls(pairs: Array, usual: float) -> NDArray[np.bool_]:
         length = line[:, _END].max() - line[:, _BEGIN].min() if as_usual else line[:, _BOTH].sum()
         verdicts.append(length >= _EVIDENCE)
     return np.array(verdicts, dtype=np.bool_)
+
+
+def _stubs(walls: Array, frame: WallFrame, along_y: bool, usual: float) -> Array:
+    """(k, 7) walls as thick as most of which one face is known, and cells show both beside doorways."""
+    free = frame.free.T if along_y else frame.free  # rows across the wall, columns along it
+    across, along = frame.low if along_y else frame.low[::-1]
+    below, above = (frame.free_beside(walls, along_y, side) for side in (-1.0, 1.0))
+    found = []
+    for k, (at, begin, end) in enumerate(walls.tolist() if usual else []):
+        low, high = (at, at + usual) if below[k] > above[k] else (at - usual, at)
+        ends = np.array([low - _FREE_BESIDE, low + _INSET, high - _INSET, high + _FREE_BESIDE])
+        rows = np.floor((ends - across) / CELL).astype(int)
+        if rows[0] < 0 or rows[3] >= len(free):
+            continue
+        first, last = np.round((np.array([begin - _DOORWAY, end + _DOORWAY]) - along) / CELL).astype(int).clip(0)
+        ribbon = free[rows[0]] & free[rows[3]] & ~free[rows[1] : rows[2] + 1].any(axis=0)
+        stubs = float(along) + CELL * (first + np.flatnonzero(ribbon[first:last]))
+        if len(stubs) * CELL >= _STUBS:
+            middle = float(np.median(stubs))
+            found.append((low, high, begin, end, len(stubs) * CELL, middle, middle))
+    return np.array(found).reshape(-1, 7)
 
 
 def _closed(walls: Array, pairs: Array, crossing: Array, frame: WallFrame, along_y: bool) -> list[Box]:

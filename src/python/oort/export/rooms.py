@@ -11,35 +11,16 @@ from dataclasses import dataclass
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from oort._core import OccupancyGrid
 from oort.errors import OortError
-from oort.export.inner_walls import ALIGNED, inner_walls
-from oort.export.wall_frame import (
-    CELL,
-    Array,
-    Box,
-    Mask,
-    WallFrame,
-    axis_walls,
-    covered,
-    main_direction,
-    make_frame,
-    oriented,
-    turn,
-)
+from oort.export.inner_walls import inner_walls
+from oort.export.room_sides import Labels, Sides, Uncoverer, box_of, snap
+from oort.export.wall_frame import CELL, Array, Box, Mask, WallFrame, axis_walls, main_direction, make_frame, turn
 
-Labels = NDArray[np.int32]
-
-# Fitted on the simulated homes 1 to 18 and tried on 19 to 42 (docs/export.md).
+# Fitted on the simulated homes 1 to 18 and 200 to 259, and tried on others (docs/export.md).
 _SMALLEST = 1.0  # [m^2] of free floor that is a room
 _OPEN = 0.5  # share of the border between two rooms beyond which they are one
-_SHARED = 0.15  # [m] of a wall along the side of a room that it bounds
-_SNAP = 0.12  # [m] that an outline is moved to a wall at most
-_WHOLE = 0.9  # share of a side along which a wall was seen: there is nothing to look for behind it
-_HIDDEN = 2.2  # [m] that furniture hides at most behind it: a bed
-_LINE = 2.0  # [m] of a wall that is taken to go on behind furniture
 _STRANGERS = 0.03  # share of a room's rectangle that other rooms may take
 _LEAST_OWN = 0.15  # share of its rectangle that must be free: homes leave 0.18 of a room passable
 _MOST_UNSEEN = 25.0  # [m^2] of a room's rectangle that may not be free; more is no furniture
@@ -82,16 +63,23 @@ def find_rooms(walls: Array, grid: OccupancyGrid) -> list[Room]:
     frame = make_frame(grid, main_direction(walls))
     turned = turn(walls.reshape(-1, 2), -frame.angle).reshape(-1, 4)
     across, up = axis_walls(turned, along_y=False), axis_walls(turned, along_y=True)
-    strips = [(along_y, frame.cells(_grown(box))) for along_y, box in inner_walls(across, up, frame)]
+    inner, usual = inner_walls(across, up, frame)
+    strips = [(along_y, frame.cells(_grown(box))) for along_y, box in inner]
     cut = np.zeros_like(frame.free)
     for _, window in strips:
         cut[window] = True
     labels = _join_open(ndimage.label(frame.free & ~cut)[0], frame.free, strips)
-    rooms = []
-    for k, window in enumerate(ndimage.find_objects(labels), 1):
-        if window is None or (labels[window] == k).sum() * CELL**2 < _SMALLEST:
-            continue
-        rooms.append(_room(shapely, ndimage.binary_fill_holes, frame, labels, k, window, (across, up)))
+    windows = {
+        k: window
+        for k, window in enumerate(ndimage.find_objects(labels), 1)
+        if window is not None and (labels[window] == k).sum() * CELL**2 >= _SMALLEST
+    }
+    snapped = [snap(k, frame.box(window), across, up) for k, window in windows.items()]
+    moved = Uncoverer(frame, labels, across, up, usual).move(snapped)
+    rooms = [
+        _room(shapely, ndimage.binary_fill_holes, frame, labels, k, window, sides)
+        for (k, window), sides in zip(windows.items(), moved, strict=True)
+    ]
     return sorted(rooms, key=lambda room: -room.area)
 
 
@@ -102,10 +90,9 @@ def _room(
     labels: Labels,
     k: int,
     window: tuple[slice, slice],
-    walls: tuple[Array, Array],
+    sides: Sides,
 ) -> Room:
-    box, open_sides = _snap(frame.box(window), *walls)
-    box = _uncover(box, frame, labels, *walls)
+    box, open_sides = box_of(sides), sum(not side.found for side in sides)
     within = labels[frame.cells(box)]
     own, strangers = (within == k).mean(), ((within != k) & (within != 0)).mean()
     x0, y0, x1, y1 = box
@@ -160,42 +147,3 @@ def _trace(shapely: ModuleType, mask: Mask, box: Box) -> tuple[Array, Array, flo
 def _grown(box: Box) -> Box:
     """By a cell on each side: rounding leaves no leak."""
     return box[0] - CELL, box[1] - CELL, box[2] + CELL, box[3] + CELL
-
-
-def _snap(box: Box, across: Array, up: Array) -> tuple[Box, int]:
-    """Each side on the wall nearest to it, and how many sides have none."""
-    x0, y0, x1, y1 = box
-    sides = (x0, up, y0, y1), (y0, across, x0, x1), (x1, up, y0, y1), (y1, across, x0, x1)
-    found = [_nearest(*side) for side in sides]
-    left, lower, right, upper = (at if wall is None else wall for at, wall in zip(box, found, strict=True))
-    return (left, lower, right, upper), found.count(None)
-
-
-def _nearest(at: float, walls: Array, begin: float, end: float) -> float | None:
-    """The wall nearest to the side of a room, if there is one."""
-    shared = np.minimum(walls[:, 2], end) - np.maximum(walls[:, 1], begin)
-    near = walls[(np.abs(walls[:, 0] - at) <= _SNAP) & (shared > _SHARED), 0]
-    return float(near[np.abs(near - at).argmin()]) if len(near) else None
-
-
-def _uncover(box: Box, frame: WallFrame, labels: Labels, across: Array, up: Array) -> Box:
-    """Sides that furniture hides, moved out to the next wall that faces the room, over what nobody has seen."""
-    moved = list(box)
-    for k in (0, 2, 1, 3):  # x0, x1, y0, y1
-        along_y, outwards = k % 2 == 0, 1.0 if k >= 2 else -1.0
-        walls, (begin, end) = (up, (moved[1], moved[3])) if along_y else (across, (moved[0], moved[2]))
-        here = walls[np.abs(walls[:, 0] - moved[k]) <= ALIGNED, 1:]
-        if covered(here, begin, end) >= _WHOLE * (end - begin):
-            continue
-        inner, outer = (frame.free_beside(walls, along_y, side) for side in (-outwards, outwards))
-        facing = walls[inner > outer]
-        beyond = outwards * (facing[:, 0] - moved[k])
-        for at in sorted(facing[(beyond > _SNAP) & (beyond <= _HIDDEN), 0].tolist(), key=lambda at: outwards * at):
-            line = facing[np.abs(facing[:, 0] - at) <= ALIGNED, 1:]
-            if (line[:, 1] - line[:, 0]).sum() < _LINE:
-                continue
-            low, high = sorted((moved[k] + outwards * CELL, at - outwards * CELL))
-            if (labels[frame.cells(oriented(along_y, low, high, begin, end))] > 0).mean() <= _STRANGERS:
-                moved[k] = at
-            break
-    return moved[0], moved[1], moved[2], moved[3]

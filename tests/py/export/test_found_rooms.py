@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: 2026 The Oort authors
+# SPDX-License-Identifier: Apache-2.0
+"""Rooms of painted homes: walls 0.12 m thick, free rectangles, and what furniture hides."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from oort._core import OccupancyGrid
+from oort.export.rooms import find_rooms
+
+_RESOLUTION = 0.05
+_SIZE = 240  # cells each way
+_LOW = -1.0  # [m] the grid's corner, both ways
+
+Box = tuple[float, float, float, float]
+
+
+def _grid(free: list[Box]) -> OccupancyGrid:
+    """A map with free rectangles x0, y0, x1, y1 and nothing known elsewhere."""
+    cells = np.full((_SIZE, _SIZE), -1, dtype=np.int8)
+    for box in free:
+        scaled = (np.array(box) - _LOW) / _RESOLUTION
+        (x0, y0), (x1, y1) = np.ceil(scaled[:2] - 1e-6).astype(int), np.floor(scaled[2:] + 1e-6).astype(int)
+        cells[y0:y1, x0:x1] = 0
+    grid = SimpleNamespace(cells=cells, width=_SIZE, height=_SIZE, resolution=_RESOLUTION, origin=(_LOW, _LOW))
+    return cast(OccupancyGrid, grid)
+
+
+def _areas(free: list[Box], walls: list[Box]) -> list[float]:
+    return [room.area for room in find_rooms(np.array(walls), _grid(free))]
+
+
+def _sides(x0: float, y0: float, x1: float, y1: float) -> list[Box]:
+    """The four walls of a room, seen from within."""
+    return [(x0, y0, x1, y0), (x1, y0, x1, y1), (x0, y1, x1, y1), (x0, y0, x0, y1)]
+
+
+def _column(*rights: float) -> tuple[list[Box], list[Box]]:
+    """Rooms of 4 m by 2.88 m above each other, a door between any two; where free space ends on the right of each."""
+    free: list[Box] = []
+    walls: list[Box] = []
+    for k, right in enumerate(rights):
+        low = 3.0 * k
+        free.append((0.0, low, right, low + 2.88))
+        walls += _sides(0.0, low, right, low + 2.88)
+        if k:
+            free.append((1.0, low - 0.2, 1.8, low + 0.1))
+    return free, walls
+
+
+def test_rooms_end_at_their_walls() -> None:
+    assert _areas(*_column(4.0, 4.0)) == pytest.approx([11.52, 11.52], rel=0.01)
+
+
+@pytest.mark.parametrize(("first", "found"), [(0.4, 2), (0.0, 1)])
+def test_a_wall_between_furniture_shows_beside_its_door(first: float, found: int) -> None:
+    """Of a wall at x = 4 one room sees what two cupboards leave of it, too short for a line; the other room all."""
+    free: list[Box] = [(0.0, 0.0, 3.4, 4.0), (3.4, 1.5 - first, 4.0, 2.5), (3.9, 1.5, 4.3, 2.5), (4.12, 0.0, 8.0, 4.0)]
+    walls: list[Box] = [
+        (4.12, 0.0, 4.12, 1.5),
+        (4.12, 2.5, 4.12, 4.0),
+        (3.4, 0.0, 3.4, 1.5 - first),
+        (3.4, 2.5, 3.4, 4.0),
+    ]
+    walls += [(0.0, 0.0, 3.4, 0.0), (0.0, 4.0, 3.4, 4.0), (0.0, 0.0, 0.0, 4.0)]
+    walls += [(4.12, 0.0, 8.0, 0.0), (4.12, 4.0, 8.0, 4.0), (8.0, 0.0, 8.0, 4.0)]
+    free += [(0.0, 4.12, 8.0, 7.0)]  # tells how thick walls are
+    walls += _sides(0.0, 4.12, 8.0, 7.0)
+    assert len(_areas(free, walls)) == 1 + found
+
+
+def test_a_side_behind_a_wardrobe_is_where_the_rooms_beside_have_it() -> None:
+    assert _areas(*_column(4.0, 3.4, 4.0)) == pytest.approx([11.52] * 3, rel=0.01)
+
+
+def test_one_room_beside_does_not_move_a_side_that_was_seen() -> None:
+    assert _areas(*_column(4.0, 3.4)) == pytest.approx([11.52, 3.4 * 2.88], rel=0.01)
+
+
+def test_one_room_beside_moves_a_side_that_was_not_seen() -> None:
+    free, walls = _column(4.0, 3.4)
+    walls.remove((3.4, 3.0, 3.4, 5.88))
+    assert _areas(free, walls) == pytest.approx([11.52, 11.52], rel=0.01)
+
+
+def test_a_side_that_was_not_seen_is_where_the_room_behind_has_its_wall() -> None:
+    free, walls = _column(4.0, 3.6)
+    walls.remove((3.6, 3.0, 3.6, 5.88))
+    free.append((4.32, 3.0, 6.0, 5.88))  # its wall lies 0.2 m farther out than that of the room below
+    walls += _sides(4.32, 3.0, 6.0, 5.88)
+    areas = _areas(free, walls)
+    assert areas == pytest.approx([4.2 * 2.88, 11.52, 1.68 * 2.88], rel=0.02)
+
+
+def test_a_line_is_not_followed_across_another_room() -> None:
+    free, walls = _column(4.0, 2.5)
+    walls.remove((2.5, 3.0, 2.5, 5.88))
+    free.append((2.9, 3.1, 3.9, 5.8))
+    walls.append((2.9, 3.1, 2.9, 5.8))
+    assert _areas(free, walls)[1] == pytest.approx(2.78 * 2.88, rel=0.01)  # to the back of that room's wall
