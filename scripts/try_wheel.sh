@@ -1,18 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The Oort authors
 # SPDX-License-Identifier: Apache-2.0
-# Tries the wheel in dist/ where nothing else is: a bare Debian with Python, made by debootstrap (as root), into which
-# pip installs from a folder of wheels, without a network. A home is simulated and mapped there, the picture and the
-# page are made, and the map must have the bytes of the map that .venv makes here.
+# Tries the wheel in dist/ where nothing else is: a bare Debian or Ubuntu with Python (scripts/bare_tree.sh, as root),
+# into which pip installs from a folder of wheels, without a network. A home is simulated and mapped there, the picture
+# and the page are made, and the map must have the bytes of the map that .venv makes here.
 #   scripts/try_wheel.sh [SUITE]      SUITE is bookworm if not given; its Python must be that of the wheel
 set -euo pipefail
 cd "$(dirname "$0")/.."
 suite=${1:-bookworm}
 root=build/wheel/$suite
-command -v debootstrap >/dev/null || { echo "debootstrap is not there: install Debian's package debootstrap" >&2; exit 1; }
-mirror=$({ cat /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null || true; } |
-  sed -n 's/^URIs: *//p; s/^deb \(\[.*\] \)\?\(\S*\) .*/\2/p' | head -1)
-[ -x $root/usr/bin/python3 ] || debootstrap --variant=minbase --include=python3-venv "$suite" $root "$mirror" >$root.log
+scripts/bare_tree.sh "$suite"
 
 tag=$(chroot $root python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
 wheel=$(ls dist/oort-*-"$tag"-*.whl) || { echo "dist/ has no wheel for $tag; see scripts/wheel.sh" >&2; exit 1; }
