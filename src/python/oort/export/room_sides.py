@@ -112,16 +112,16 @@ class Uncoverer:
 
     def _wall_of(self, side: Side, others: Sides) -> float:
         """Where the wall of a side is: as two of what lies before, after and behind it tell, or one if it is unseen."""
-        seen = self._seen(side) / (side.end - side.begin)
+        seen, length = self._seen(side), side.end - side.begin
         hints = [hint for other in others for hint in self._hints(side, other)]
         best = 0.0, side.at
         for hint in hints:
             line = [each for each in hints if abs(each.at - hint.at) <= _ONE_LINE and each.known > _KNOWN]
             known, beyond = sum(each.known for each in line), side.outwards * (hint.at - side.at)
             certain = len({each.where for each in line} - {""}) > 1
-            if seen <= _UNSEEN:
+            if seen <= _UNSEEN * length:
                 certain |= hint.where == "behind" or (bool(line) and beyond > _SNAP)
-            elif seen <= _HALF_SEEN and hint.where != "behind":
+            elif seen <= _HALF_SEEN * length and hint.where != "behind":
                 certain |= known >= _LONG and beyond > _FAR
             if certain and self._is_hidden(side, hint.at):
                 best = max(best, (known, hint.at))
@@ -129,17 +129,17 @@ class Uncoverer:
 
     def _hints(self, side: Side, other: Side) -> Iterator[_Hint]:
         """What a side of another room tells of where the wall of a side is."""
+        behind = other.outwards != side.outwards
+        at = other.at - side.outwards * self._usual if behind else other.at
         if other.room == side.room or other.along_y != side.along_y:
             return
-        if other.outwards == side.outwards:
-            before, after = other.end <= side.begin + _BESIDE, other.begin >= side.end - _BESIDE
-            hint = _Hint(other.at, self._seen(other), "before" if before else "after" if after else "")
-        elif self._usual and min(side.end, other.end) - max(side.begin, other.begin) > _BEHIND:
-            hint = _Hint(other.at - side.outwards * self._usual, self._seen(other), "behind")
-        else:
+        if not CELL < side.outwards * (at - side.at) <= _HIDDEN:
             return
-        if CELL < side.outwards * (hint.at - side.at) <= _HIDDEN:
-            yield hint
+        if not behind:
+            before, after = other.end <= side.begin + _BESIDE, other.begin >= side.end - _BESIDE
+            yield _Hint(at, self._seen(other), "before" if before else "after" if after else "")
+        elif self._usual and min(side.end, other.end) - max(side.begin, other.begin) > _BEHIND:
+            yield _Hint(at, self._seen(other), "behind")
 
     def _is_hidden(self, side: Side, at: float) -> bool:
         low, high = sorted((side.at + side.outwards * CELL, at - side.outwards * CELL))
