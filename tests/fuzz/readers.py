@@ -257,6 +257,8 @@ def _by_coverage(reader: str) -> None:
         rng = np.random.Generator(np.random.PCG64(seed))
         return change(rng, data if len(data) > 16 else begin[seed // 2 % len(begin)])[:max_size]
 
+    for data in begin:  # modules that are imported when they are first needed, would not be instrumented
+        try_one(reader, data, folder)
     for function in [thing for thing in gc.get_objects() if isinstance(thing, types.FunctionType)]:
         if (function.__module__ or "").partition(".")[0] in ("oort", "rosbags"):  # all of Python would take a minute
             atheris.instrument_func(function)
