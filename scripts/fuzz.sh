@@ -17,7 +17,7 @@ command -v clang++-14 > /dev/null || { echo "fuzz.sh: clang++-14 is missing: apt
 cmake -S . -B build/fuzz -G Ninja -D CMAKE_BUILD_TYPE=Fuzz -D CMAKE_CXX_FLAGS_FUZZ="-O1 -g" \
   -D CMAKE_C_COMPILER=clang-14 -D CMAKE_CXX_COMPILER=clang++-14 \
   -D OORT_FUZZ=ON -D OORT_TESTS=OFF -D OORT_PYTHON=OFF -D OORT_ROS=OFF > /dev/null
-cmake --build build/fuzz
+cmake --build build/fuzz --target "${in_cpp[@]/#/fuzz_}"
 .venv/bin/python -c "import atheris" 2> /dev/null || .venv/bin/pip install --quiet "atheris>=3.0"
 
 failed=0
@@ -25,7 +25,7 @@ for target in "${targets[@]}"; do
   corpus=build/fuzz/corpus/$target
   mkdir -p "$corpus"
   options=(-max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -max_len=65536 -print_final_stats=1
-    -artifact_prefix="build/fuzz/$target-" -verbosity=1)
+    -artifact_prefix="$PWD/build/fuzz/$target-" -verbosity=1)
   if [[ " ${in_cpp[*]} " == *" $target "* ]]; then
     command=("build/fuzz/fuzz_$target" "${options[@]}" "$corpus" "tests/fuzz/corpus/$target")
   else
