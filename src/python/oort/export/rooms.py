@@ -51,7 +51,7 @@ class Room:
 def find_rooms(walls: Array, grid: OccupancyGrid) -> list[Room]:
     """The rooms, the largest first, from walls (k, 4) as fit_walls() gives them.
 
-    Raises OortError without scipy and shapely.
+    Raises OortError without scipy and shapely, InputError for a map that is too wide.
     """
     try:
         import shapely
@@ -122,11 +122,11 @@ def _join_open(labels: Labels, free: Mask, strips: Sequence[tuple[bool, tuple[sl
         for (first, second), opening in zip(pairs.tolist(), openings.tolist(), strict=True):
             wall, most = borders.get((first, second), (0, 0))
             borders[first, second] = max(wall, int((~is_open).sum())), max(most, opening)
-    root = np.arange(labels.max() + 1)
+    root = np.arange(labels.max() + 1, dtype=np.int32)
     for (first, second), (wall, opening) in sorted(borders.items()):
         if opening > _OPEN * (wall + opening):
             root[root == root[second]] = root[first]
-    joined: Labels = root[labels].astype(np.int32)
+    joined: Labels = root[labels]
     return joined
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oort._core import OccupancyGrid
+from oort.errors import InputError
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -17,6 +18,8 @@ Box = tuple[float, float, float, float]
 CELL = 0.05
 """[m]"""
 
+_MOST = 1.5e8  # cells of a frame: the widest map that is drawn at 5 cm, turned by any angle
+_AT_A_TIME = 1 << 20  # cells that are looked up together
 _NEAR, _FAR = 0.06, 0.22  # [m] from a face: the strip that tells from which side it was seen
 
 
@@ -59,18 +62,25 @@ def oriented(along_y: bool, low: float, high: float, begin: float, end: float) -
 
 
 def make_frame(grid: OccupancyGrid, angle: float) -> WallFrame:
-    """Free cells in the frame of the walls."""
+    """Free cells in the frame of the walls. Raises InputError for a map that is too wide."""
     size = grid.resolution * np.array([grid.width, grid.height])
     turned = turn(np.array(grid.origin) + size * np.array([[0, 0], [1, 0], [1, 1], [0, 1]]), -angle)
     low, high = turned.min(axis=0), turned.max(axis=0)
-    columns, rows = np.ceil((high - low) / CELL).astype(int)
-    x, y = np.meshgrid(low[0] + CELL * (np.arange(columns) + 0.5), low[1] + CELL * (np.arange(rows) + 0.5))
-    points = turn(np.stack([x.ravel(), y.ravel()], axis=1), angle)
-    index = np.floor((points - np.array(grid.origin)) / grid.resolution).astype(int)
-    inside = ((index >= 0) & (index < [grid.width, grid.height])).all(axis=1)
-    free = np.zeros(len(points), dtype=np.bool_)
-    free[inside] = grid.cells[index[inside, 1], index[inside, 0]] == 0
-    return WallFrame(angle, low, free.reshape(rows, columns))
+    columns, rows = np.ceil((high - low) / CELL).astype(int).tolist()
+    if columns * rows > _MOST:
+        raise InputError(f"rooms are not looked for in a map of {high[0] - low[0]:.0f} m x {high[1] - low[1]:.0f} m")
+    cells, c, s = grid.cells, np.cos(angle), np.sin(angle)
+    x = low[0] + CELL * (np.arange(columns) + 0.5)
+    free = np.zeros((rows, columns), dtype=np.bool_)
+    step = max(1, _AT_A_TIME // columns)
+    for first in range(0, rows, step):  # numbers of all cells at once would take gigabytes
+        part = free[first : first + step]
+        y = low[1] + CELL * (first + np.arange(len(part))[:, None] + 0.5)
+        column = np.floor((x * c - y * s - grid.origin[0]) / grid.resolution).astype(np.int32)
+        row = np.floor((x * s + y * c - grid.origin[1]) / grid.resolution).astype(np.int32)
+        inside = (column >= 0) & (column < grid.width) & (row >= 0) & (row < grid.height)
+        part[inside] = cells[row[inside], column[inside]] == 0
+    return WallFrame(angle, low, free)
 
 
 def main_direction(walls: Array) -> float:
