@@ -258,7 +258,9 @@ void bind_storage(py::module_& m) {
       "Reads a map given by its base path, one of its files, or X.capnp. Raises MapFileError.");
   py::class_<MapFormat>(m, "MapFormat", "Which format a map file has.")
       .def_readonly("version", &MapFormat::version, "0 for a map of the original Oort.")
-      .def_readonly("written_by", &MapFormat::written_by, "The program and its version; empty if it is not known.");
+      .def_property_readonly(
+          "written_by", [](const MapFormat& format) { return to_str(format.written_by); },
+          "The program and its version; empty if it is not known.");
   m.attr("FORMAT_VERSION") = py::int_(kFormatVersion);
   m.def(
       "read_map_format",

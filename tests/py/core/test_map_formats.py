@@ -98,6 +98,17 @@ def test_newer_maps_are_refused_by_name(tmp_path: Path) -> None:
     assert (found.version, found.written_by) == (7, "Oort 3.2.1")
 
 
+def test_a_writer_that_is_no_text_is_told_as_far_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for path in (MAPS / "format_1").glob("home.*"):
+        data = path.read_bytes()
+        (tmp_path / path.name).write_bytes(data.replace(b"Oort 0.1", b"\xf1ort 0.1"))
+    base = str(tmp_path / "home")
+    assert _core.read_map_format(base, ignore_checksum=True).written_by == "\ufffdort 0.1.0"
+    for words in (["migrate", base, str(tmp_path / "new")], ["info", base], ["info", base, "--json"]):
+        assert main([*words, "--ignore-checksum"]) == 0
+    assert "ort 0.1.0" in capsys.readouterr().out
+
+
 def test_newer_places_are_refused(tmp_path: Path) -> None:
     base = newer(tmp_path, ".map_meta_capnp", "Map2dMetadata")
     with pytest.raises(MapFileError, match=r"map_meta_capnp has the map format 7, written by a newer Oort"):
