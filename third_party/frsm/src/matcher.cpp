@@ -188,8 +188,8 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
   if (params_.ambiguity_floor < 1.0) match.ambiguity = second_peak(search, best, params_);
   match.pose = polish(table, points, search.objective, search.lattice.at(best.it, best.ix, best.iy),
                       {kPolishReach * cell, kPolishReach * cell, kPolishReach * params_.theta_step});
-  const Shape shape = fit_shape(table, points, match.pose, weight, params_.min_curvature, window);
-  match.pose = slide_to_prior(match.pose, shape, search.objective, guess);
+  Shape shape = fit_shape(table, points, match.pose, weight, params_.min_curvature, window);
+  match.pose = slide_to_prior(table, points, match.pose, search.objective, guess, &shape);
   count_hits(table, points, params_.hit_value, &match);
   match.evidence = weight * match.score;
   match.information = shape.information;

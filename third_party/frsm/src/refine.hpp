@@ -21,6 +21,7 @@ struct Shape {
   /// Along degenerate directions the information of a standard deviation as wide as the window, 0 elsewhere.
   Eigen::Matrix3d window_information = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d free = Eigen::Matrix3d::Zero();  ///< the first free_directions columns: motions that no point resists
+  Eigen::Matrix3d free_dual = Eigen::Matrix3d::Zero();  ///< its columns: how much of each is in a motion
   int free_directions = 0;
 };
 
@@ -29,7 +30,9 @@ struct Shape {
 Shape fit_shape(const Table& table, const Points& body, const Pose& peak, double weight, double min_curvature,
                 const Window& window);
 
-/// Moves a pose along its free directions to where the prior is best; without one, nearest to the guess.
-Pose slide_to_prior(const Pose& pose, const Shape& shape, const Objective& objective, const Pose& guess);
+/// Moves a pose along its free directions to where the prior is best; without one, nearest to the guess. If the scan
+/// fits clearly worse there, the way is not free after all: the pose stays, and `shape` has information along it.
+Pose slide_to_prior(const Table& table, const Points& body, const Pose& pose, const Objective& objective,
+                    const Pose& guess, Shape* shape);
 
 }  // namespace frsm
