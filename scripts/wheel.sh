@@ -5,7 +5,7 @@
 # those of this distribution, so the wheel runs where glibc is as new as here: one built on Debian 12 on Ubuntu 22.04
 # and later too, if that has the same version of Python. On arm64 it works the same way. scripts/setup.sh comes first.
 #   scripts/wheel.sh                      for the Python of this distribution, /usr/bin/python3
-#   scripts/wheel.sh trixie               for that of Debian 13, as root; or noble, Ubuntu 24.04: scripts/bare_tree.sh
+#   scripts/wheel.sh trixie               for that of Debian 13, as root; noble is Ubuntu 24.04: scripts/bare_tree.sh
 #   PYTHON=/opt/python3.14/bin/python3 scripts/wheel.sh      for another, with its headers
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +15,7 @@ if [ $# -gt 0 ]; then
   python=$PWD/build/wheel/$1/usr/bin/python3-outside
 fi
 tag=$("$python" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
-tools=build/wheel/tools-$tag
+tools=build/wheel/tools-${1:-$tag}
 raw=build/wheel/raw-$tag
 rm -rf "$raw"
 if [ ! -x "$tools/bin/pip" ]; then
