@@ -121,7 +121,8 @@ def _closed(walls: Array, pairs: Array, crossing: Array, frame: WallFrame, along
     for pair in pairs:
         low, high = float(pair[_LOW]), float(pair[_HIGH])
         rows = np.round((np.array([low, high]) - across) / CELL).astype(int)
-        inside = free[max(rows[0], 0) : max(rows[1], rows[0] + 1)]
+        first_row = min(max(int(rows[0]), 0), len(free) - 1)
+        inside = free[first_row : max(int(rows[1]), first_row + 1)]
         profile = np.where(inside.mean(axis=0) > 0.5, _OPEN, _WALL)
         through = crossing[(crossing[:, _BEGIN] <= low - _STUB) & (crossing[:, _END] >= high + _STUB), :2]
         for begin, end in np.round((through - along) / CELL).astype(int).tolist():

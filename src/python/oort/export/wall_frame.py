@@ -18,7 +18,7 @@ Box = tuple[float, float, float, float]
 CELL = 0.05
 """[m]"""
 
-_MOST = 1.5e8  # cells of a frame: the widest map that is drawn at 5 cm, turned by any angle
+_MOST = 1.5e8  # cells of a frame, 2 GB: the widest square map that is drawn at 5 cm, turned by any angle
 _AT_A_TIME = 1 << 20  # cells that are looked up together
 _NEAR, _FAR = 0.06, 0.22  # [m] from a face: the strip that tells from which side it was seen
 
