@@ -195,7 +195,7 @@ Match Matcher::match(const Table& table, const Points& body, const Pose& guess, 
   match.information = shape.information;
   match.degenerate = shape.free_directions > 0;
   match.covariance =
-      (shape.information + (prior != nullptr ? search.objective.information() : shape.window_information)).inverse();
+      (shape.information + (prior != nullptr ? search.objective.information() : shape.window_information())).inverse();
   match.status = judge(match, params_);
   return match;
 }

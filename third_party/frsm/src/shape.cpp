@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -16,10 +17,12 @@ constexpr int kReach = 2;             // cells and steps each way
 constexpr double kSumSquare = 14.0;   // sum of (u^2 - 2)^2 over u = -2..2
 constexpr double kSumProduct = 10.0;  // sum of u^2
 constexpr double kSamples = 5.0;
-// A slide to the prior may cost a scan this share of its score. Corridors lose 2 % (median on fr079, CSAIL and the
-// sparse logs of Radish); a peak made blunt by a map whose scans disagree by a cell or two lost a third, and 4 degrees
-// with it. A poor match is left to the prior all the same: it may be the wrong peak.
-constexpr double kMaxSlideLoss = 0.2;
+// Walls that were drawn a cell or two apart make a blunt peak: within kReach nothing resists. So a free direction must
+// cost a match no more than this share of its score on the first cells of its way to the prior. Only on the first, as
+// farther on, along a corridor, points leave what was ever drawn. A poor match is left to the prior all the same: it
+// may be the wrong peak. Chosen with belgioioso, acapulco and edmonton.
+constexpr double kSlideTest = 8.0;  // [cells]
+constexpr double kMaxSlideLoss = 0.15;
 constexpr double kLeastHeldScore = 0.6;
 
 // The scan turns about the middle of its points: about the sensor, turning and moving sideways would look alike.
@@ -88,7 +91,51 @@ double mean_score(const Table& table, const Points& body, const Pose& pose) {
   return sum / (255.0 * static_cast<double>(body.size()));
 }
 
+// How far along each free direction the prior is best: min over t of (d + F t)^T M (d + F t).
+Eigen::VectorXd way_to_prior(const Pose& pose, const Shape& shape, const Objective& objective, const Pose& guess) {
+  const auto& gaussian = objective.gaussian();
+  const Pose& mean = gaussian ? gaussian->mean : guess;
+  const Eigen::Matrix3d metric = gaussian ? objective.information() : shape.window_information();
+  const auto free = shape.free.leftCols(shape.free_directions);
+  const Eigen::Vector3d d(pose.x - mean.x, pose.y - mean.y, wrap(pose.theta - mean.theta));
+  const Eigen::MatrixXd normal = free.transpose() * metric * free;
+  return -normal.ldlt().solve(free.transpose() * metric * d);
+}
+
+Pose moved(const Pose& pose, const Eigen::Vector3d& by) {
+  return {pose.x + by[0], pose.y + by[1], wrap(pose.theta + by[2])};
+}
+
+// Makes directions free no longer in which the score falls on the way to the prior.
+void hold_what_resists(const Table& table, const Points& body, const Pose& pose, double weight,
+                       const Eigen::VectorXd& way, Shape* shape) {
+  const double here = mean_score(table, body, pose);
+  if (here < kLeastHeldScore) return;
+  int left = 0;
+  for (int k = 0; k < shape->free_directions; ++k) {
+    const double cells = std::clamp(way[k], -kSlideTest, kSlideTest);
+    const double loss = here - mean_score(table, body, moved(pose, cells * shape->free.col(k)));
+    if (loss > kMaxSlideLoss * here) {
+      const Eigen::Vector3d dual = shape->free_dual.col(k);
+      shape->information += 2.0 * weight * loss / (cells * cells) * dual * dual.transpose();
+    } else {
+      shape->free.col(left) = shape->free.col(k).eval();
+      shape->free_dual.col(left) = shape->free_dual.col(k).eval();
+      shape->free_width[left++] = shape->free_width[k];
+    }
+  }
+  shape->free_directions = left;
+}
+
 }  // namespace
+
+Eigen::Matrix3d Shape::window_information() const {
+  Eigen::Matrix3d wide = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < free_directions; ++k) {
+    wide += free_dual.col(k) * free_dual.col(k).transpose() / (free_width[k] * free_width[k]);
+  }
+  return wide;
+}
 
 Shape fit_shape(const Table& table, const Points& body, const Pose& peak, double weight, double min_curvature,
                 const Window& window) {
@@ -109,10 +156,10 @@ Shape fit_shape(const Table& table, const Points& body, const Pose& peak, double
     if (eigen.eigenvalues()[i] >= min_curvature * full_curvature(table.params())) {
       shape.information += weight * eigen.eigenvalues()[i] * row * row.transpose();
     } else {
-      const double half_width = direction.cwiseProduct(widths.cwiseQuotient(steps)).norm();
-      shape.window_information += row * row.transpose() / (half_width * half_width);
-      shape.free_dual.col(shape.free_directions) = row;
-      shape.free.col(shape.free_directions++) = to_pivot.inverse() * direction.cwiseProduct(steps);
+      const int k = shape.free_directions++;
+      shape.free.col(k) = to_pivot.inverse() * direction.cwiseProduct(steps);
+      shape.free_dual.col(k) = row;
+      shape.free_width[k] = direction.cwiseProduct(widths.cwiseQuotient(steps)).norm();
     }
   }
   return shape;
@@ -121,23 +168,12 @@ Shape fit_shape(const Table& table, const Points& body, const Pose& peak, double
 Pose slide_to_prior(const Table& table, const Points& body, const Pose& pose, const Objective& objective,
                     const Pose& guess, Shape* shape) {
   if (shape->free_directions == 0) return pose;
-  const auto& gaussian = objective.gaussian();
-  const Pose& mean = gaussian ? gaussian->mean : guess;
-  const Eigen::Matrix3d metric = gaussian ? objective.information() : shape->window_information;
-  const auto free = shape->free.leftCols(shape->free_directions);
-  const Eigen::Vector3d d(pose.x - mean.x, pose.y - mean.y, wrap(pose.theta - mean.theta));
-  // min over t of (d + F t)^T M (d + F t)
-  const Eigen::MatrixXd normal = free.transpose() * metric * free;
-  const Eigen::VectorXd t = -normal.ldlt().solve(free.transpose() * metric * d);
-  const Eigen::Vector3d slide = free * t;
-  const Pose slid{pose.x + slide[0], pose.y + slide[1], wrap(pose.theta + slide[2])};
-  const double here = mean_score(table, body, pose);
-  const double loss = here - mean_score(table, body, slid);
-  if (loss <= kMaxSlideLoss * here || here < kLeastHeldScore) return slid;
-  const Eigen::Vector3d along = shape->free_dual.leftCols(shape->free_directions) * t / t.squaredNorm();
-  shape->information += 2.0 * objective.weight() * loss * along * along.transpose();
-  --shape->free_directions;
-  return pose;
+  const Eigen::VectorXd way = way_to_prior(pose, *shape, objective, guess);
+  hold_what_resists(table, body, pose, objective.weight(), way, shape);
+  if (shape->free_directions == 0) return pose;
+  const Eigen::VectorXd rest =
+      shape->free_directions == way.size() ? way : way_to_prior(pose, *shape, objective, guess);
+  return moved(pose, shape->free.leftCols(shape->free_directions) * rest);
 }
 
 }  // namespace frsm

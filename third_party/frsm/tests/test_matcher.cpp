@@ -202,6 +202,24 @@ TEST(Matcher, BluntPeakIsNotLeftForThePrior) {
   expect_sound(match);
 }
 
+// Farther along a corridor points leave what was drawn. That says nothing of where the sensor is.
+TEST(Matcher, CorridorWhoseMapEndsIsLeftForThePrior) {
+  std::mt19937 random(6);
+  const test::Scene scene = {{{-20.0, 1.0}, {20.0, 1.0}}, {{-20.0, -1.0}, {20.0, -1.0}}};
+  const Sensor sensor{181, kPi, 3.5, 0.005};
+  const Table table = draw(test::scan(scene, {}, sensor, random), {});
+  MatcherParams params;
+  params.information_scale = 1.0;
+  for (const double ahead : {0.5, 1.0, 2.0, 3.0}) {
+    const Points body = test::scan(scene, {ahead, 0.0, 0.0}, sensor, random);
+    const Prior prior{{ahead, 0.0, 0.0}, Eigen::Vector3d(0.25, 1e-3, 1e-3).asDiagonal()};
+    const Match match = Matcher(params).match(table, body, prior.mean, {1.5, 0.1, 0.1}, &prior);
+    EXPECT_TRUE(match.degenerate) << ahead;
+    EXPECT_NEAR(match.pose.x, ahead, 0.05);
+    EXPECT_GT(match.covariance(0, 0), 0.2);
+  }
+}
+
 TEST(Matcher, SaysWhyThereIsNoMatch) {
   std::mt19937 random(7);
   const Pose pose{0.1, 0.3, 0.2};
