@@ -101,3 +101,9 @@ def test_a_line_is_not_followed_across_another_room() -> None:
     free.append((2.9, 3.1, 3.9, 5.8))
     walls.append((2.9, 3.1, 2.9, 5.8))
     assert _areas(free, walls)[1] == pytest.approx(2.78 * 2.88, rel=0.01)  # to the back of that room's wall
+
+
+def test_of_two_lines_that_agree_a_mirrored_home_has_the_same() -> None:
+    free, walls = _column(4.0, 3.4, 4.05)
+    areas = _areas(*([(10.0 - x1, y0, 10.0 - x0, y1) for x0, y0, x1, y1 in boxes] for boxes in (free, walls)))
+    assert areas == pytest.approx(_areas(free, walls), rel=0.005)

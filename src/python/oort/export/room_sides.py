@@ -114,7 +114,7 @@ class Uncoverer:
         """Where the wall of a side is: as two of what lies before, after and behind it tell, or one if it is unseen."""
         seen, length = self._seen(side), side.end - side.begin
         hints = [hint for other in others for hint in self._hints(side, other)]
-        best = 0.0, side.at
+        best = 0.0, 0.0  # [m] of wall known, and the way to it
         for hint in hints:
             line = [each for each in hints if abs(each.at - hint.at) <= _ONE_LINE and each.known > _KNOWN]
             known, beyond = sum(each.known for each in line), side.outwards * (hint.at - side.at)
@@ -124,8 +124,8 @@ class Uncoverer:
             elif seen <= _HALF_SEEN * length and hint.where != "behind":
                 certain |= known >= _LONG and beyond > _FAR
             if certain and self._is_hidden(side, hint.at):
-                best = max(best, (known, hint.at))
-        return best[1]
+                best = max(best, (known, beyond))
+        return side.at + side.outwards * best[1]
 
     def _hints(self, side: Side, other: Side) -> Iterator[_Hint]:
         """What a side of another room tells of where the wall of a side is."""
