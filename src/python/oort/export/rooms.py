@@ -14,16 +14,14 @@ import numpy as np
 
 from oort._core import OccupancyGrid
 from oort.errors import OortError
+from oort.export.hidden_sides import Uncoverer
 from oort.export.inner_walls import inner_walls
-from oort.export.room_sides import Labels, Sides, Uncoverer, box_of, snap
+from oort.export.room_sides import Labels, Sides, box_of, snap, takes_rectangle
 from oort.export.wall_frame import CELL, Array, Box, Mask, WallFrame, axis_walls, main_direction, make_frame, turn
 
 # Fitted on the simulated homes 1 to 18 and 200 to 259, and tried on others (docs/export.md).
 _SMALLEST = 1.0  # [m^2] of free floor that is a room
 _OPEN = 0.5  # share of the border between two rooms beyond which they are one
-_STRANGERS = 0.03  # share of a room's rectangle that other rooms may take
-_LEAST_OWN = 0.15  # share of its rectangle that must be free: homes leave 0.18 of a room passable
-_MOST_UNSEEN = 25.0  # [m^2] of a room's rectangle that may not be free; more is no furniture
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +90,9 @@ def _room(
     window: tuple[slice, slice],
     sides: Sides,
 ) -> Room:
-    box, open_sides = box_of(sides), sum(not side.found for side in sides)
-    within = labels[frame.cells(box)]
-    own, strangers = (within == k).mean(), ((within != k) & (within != 0)).mean()
-    x0, y0, x1, y1 = box
-    area = (x1 - x0) * (y1 - y0)
-    if strangers <= _STRANGERS and own >= _LEAST_OWN and (1.0 - own) * area <= _MOST_UNSEEN:
+    if takes_rectangle(frame, labels, sides):
+        x0, y0, x1, y1 = box_of(sides)
+        area, open_sides = (x1 - x0) * (y1 - y0), sum(not side.found for side in sides)
         corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
         outline = turn(corners, frame.angle)
         x, y = outline.mean(axis=0).tolist()
