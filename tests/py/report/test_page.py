@@ -82,6 +82,42 @@ def test_a_closure_shows_its_two_scans_by_keyboard_alone(page: Page, run: Path) 
     assert page.locator("#overlay").evaluate(drawn)
 
 
+def test_a_closure_is_told_of_the_newer_scan_on_the_submap_of_the_older(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    data = read_page_data(run / "report.html")
+    closures, poses = data["closures"], unpack(data["nodes"]["poses"])
+    older, newer = unpack(closures["ends"]).reshape(-1, 2).T
+    assert (older < newer).all()
+    kept = unpack(closures["verdict"]) == 0
+    off = between(unpack(closures["pose"]), between(poses[older], poses[newer]))
+    assert np.hypot(*off[kept, :2].T).max() < 0.1
+    around = page.evaluate("node => view.around(node).sort((a, b) => a - b)", 10)
+    assert around == [3, 4, 5, 6, 7, 8, 9, 11, 12, 13, 14, 15, 16, 17]
+
+
+def test_what_is_wrong_is_said_in_words(page: Page, run: Path, tmp_path: Path) -> None:
+    _open(page, run / "report.html")
+    assert page.locator("#wrong").is_visible() == bool(read_page_data(run / "report.html")["troubles"])
+    trouble = {"text": _HOSTILE, "advice": "check the base's driver"}
+    data = {**read_page_data(run / "report.html"), "troubles": [trouble]}
+    (tmp_path / "report.html").write_bytes(make_report_page("home", data))
+    _open(page, tmp_path / "report.html")
+    assert page.locator("#troubles li").all_inner_texts() == [f"{_HOSTILE}: check the base's driver"]
+    del data["troubles"]  # as in runs of earlier versions
+    (tmp_path / "report.html").write_bytes(make_report_page("home", data))
+    _open(page, tmp_path / "report.html")
+    assert not page.locator("#wrong").is_visible()
+
+
+def test_the_page_says_what_the_table_says(drive: Drive, tmp_path: Path) -> None:
+    write_carmen(replace(drive, ranges=drive.ranges[:, ::-1]), tmp_path / "mirrored.clf")
+    assert replay([str(tmp_path / "mirrored.clf"), "--until", "40", "--quiet", "--out", str(tmp_path / "run")]) == 0
+    told = json.loads((tmp_path / "run/report.json").read_text())["troubles"]
+    shown = read_page_data(tmp_path / "run/report.html")["troubles"]
+    assert shown
+    assert [(each["text"], each["advice"]) for each in told] == [(each["text"], each["advice"]) for each in shown]
+
+
 def test_the_slider_moves_the_robot(page: Page, run: Path) -> None:
     _open(page, run / "report.html")
     slider = page.locator("#time")

@@ -86,8 +86,8 @@ def edge_layer(map_: Map) -> dict[str, Any]:
 def closure_layer(map_: Map, attempts: Sequence[Attempt]) -> dict[str, Any]:
     """Every closure of the map, and the most convincing of the attempts that were rejected.
 
-    ``from`` is the node in whose frame ``pose`` has the node ``to``; ``moved`` is how far [m] and by what angle [rad]
-    the solution has it elsewhere.
+    ``ends`` are the older node, in whose frame ``pose`` has the newer one, and that one; ``moved`` is how far [m] and
+    by what angle [rad] the solution has it elsewhere.
     """
     edges = map_.switchable_edges
     count = len(edges["i"])
@@ -99,11 +99,12 @@ def closure_layer(map_: Map, attempts: Sequence[Attempt]) -> dict[str, Any]:
     verdicts = ["accepted", "undone", *sorted({a.verdict for a in shown})]
     on = edges["switch"] >= SWITCH_ON
     codes = [*np.where(on, 0, 1).tolist(), *(verdicts.index(a.verdict) for a in shown)]
-    base = [*ends[:, 0].tolist(), *(a.candidate for a in shown)]
-    moving = [*ends[:, 1].tolist(), *(a.query for a in shown)]
-    poses = np.concatenate(
-        [edges["pose"].reshape(-1, 3), np.array([a.T_candidate_query for a in shown]).reshape(-1, 3)]
-    )
+    base = [*ends.min(axis=1).tolist(), *(a.candidate for a in shown)]
+    moving = [*ends.max(axis=1).tolist(), *(a.query for a in shown)]
+    measured = edges["pose"].reshape(-1, 3)
+    newer = ends[:, :1] > ends[:, 1:]  # its scan was matched with those around the older one
+    measured = np.where(newer, between(measured, np.zeros(3)), measured)
+    poses = np.concatenate([measured, np.array([a.T_candidate_query for a in shown]).reshape(-1, 3)])
     return {
         "ends": pack(np.stack([base, moving], axis=1).reshape(-1, 2), "i4"),
         "pose": pack(poses, "f4"),

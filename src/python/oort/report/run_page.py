@@ -64,6 +64,7 @@ def run_page_data(
         "recorded_seconds": report["recorded_seconds"],
         "figures": table_rows(report),
         "notes": list(report["notes"]),
+        "troubles": [{"text": trouble["text"], "advice": trouble["advice"]} for trouble in report.get("troubles", [])],
         "odometry_faults": report.get("odometry_faults", {"count": 0, "first": []}),
         "parameters": parameters.to_dict(),
         "changed_parameters": changed_parameters(parameters),

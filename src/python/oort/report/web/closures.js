@@ -50,7 +50,7 @@ class Closures {
       element("h3", {}, `Node ${moving} on node ${base}`),
       element("p", {}, this.reason(k)),
       element("p", {}, `Inlier ratio ${ratio}; measured ${measured[0].toFixed(3)} m, ${measured[1].toFixed(3)} m, ${degrees(measured[2])}.`),
-      element("p", { class: "key" }, element("i", { style: `background:${COLOURS.scans[0]}` }), `scan of node ${base} `, element("i", { style: `background:${COLOURS.scans[1]}` }), `scan of node ${moving} where the match put it`),
+      element("p", { class: "key" }, element("i", { style: `background:${COLOURS.scans[0]}` }), `scan of node ${base} `, element("i", { style: `background:${COLOURS.around}` }), "of the nodes around it ", element("i", { style: `background:${COLOURS.scans[1]}` }), `scan of node ${moving} where the match put it`),
     );
     this.draw(base, moving, measured);
     const origin = this.view.drawnPose(base);
@@ -64,19 +64,24 @@ class Closures {
     this.view.showScans([[node, this.view.drawnPose(node), COLOURS.scans[0]]]);
   }
 
-  // Both scans in the frame of the first.
+  // Both scans in the frame of the first, and what else its submap has, as the map has it.
   draw(base, moving, measured) {
     const context = this.canvas.getContext("2d");
     const { width, height } = this.canvas;
-    const clouds = [this.view.scanPoints(base, [0, 0, 0]), moving === null ? [] : this.view.scanPoints(moving, measured)];
-    const all = clouds.flat();
+    const clouds = [[this.view.scanPoints(base, [0, 0, 0]), COLOURS.scans[0]]];
+    if (moving !== null) {
+      const around = (node) => this.view.scanPoints(node, Pose.between(this.view.nodePose(base), this.view.nodePose(node)));
+      clouds.unshift([this.view.around(base).flatMap(around), COLOURS.around]);
+      clouds.push([this.view.scanPoints(moving, measured), COLOURS.scans[1]]);
+    }
+    const all = clouds.flatMap(([points]) => points);
     context.clearRect(0, 0, width, height);
     if (!all.length) return;
     const [xs, ys] = [all.map((p) => p[0]), all.map((p) => p[1])];
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const scale = 0.92 * Math.min(width / Math.max(1, right - left), height / Math.max(1, high - low));
-    clouds.forEach((points, k) => {
-      context.fillStyle = COLOURS.scans[k];
+    clouds.forEach(([points, colour]) => {
+      context.fillStyle = colour;
       for (const [x, y] of points) context.fillRect(width / 2 + scale * (x - (left + right) / 2) - 1.5, height / 2 - scale * (y - (low + high) / 2) - 1.5, 3, 3);
     });
     this.canvas.hidden = false;

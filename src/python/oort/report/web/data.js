@@ -32,6 +32,7 @@ const Pose = {
     const c = Math.cos(theta), s = Math.sin(theta);
     return [x + c * px - s * py, y + s * px + c * py];
   },
+  between: ([x, y, theta], b) => [...Pose.apply([0, 0, -theta], [b[0] - x, b[1] - y]), b[2] - theta],
   compose: (a, b) => [...Pose.apply(a, b), a[2] + b[2]],
 };
 

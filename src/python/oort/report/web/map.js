@@ -13,6 +13,7 @@ const COLOURS = {
   error: "#e11d48",
   no_go: "#dc2626",
   scans: ["#0b6bcb", "#d6336c"],
+  around: "#9ec5ea",
 };
 const ROOM_COLOURS = ["#2563eb", "#059669", "#d97706", "#7c3aed", "#db2777", "#0891b2", "#65a30d", "#ea580c"];
 const TIME_COLOURS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
@@ -170,7 +171,9 @@ class MapView {
     const { ends, sigma, kind } = this.data.edges;
     const lines = SIGMA_COLOURS.map(() => []);
     const odometry = [];
+    this.follows = new Set(); // nodes that an edge ties to the next one
     for (let k = 0; k < sigma.length; ++k) {
+      if (ends[2 * k + 1] === ends[2 * k] + 1) this.follows.add(ends[2 * k]);
       const line = this.line(ends[2 * k], ends[2 * k + 1]);
       if (line === null) continue;
       const above = SIGMA_LIMITS.filter((limit) => sigma[k] > limit).length;
@@ -265,6 +268,15 @@ class MapView {
     return [x + dx, y + dy, theta];
   }
 
+  // The nodes before and after one that its submap has, without itself.
+  around(node) {
+    const half = Math.floor((this.data.parameters["loop_closure_graph_builder.submap_neighborhood_size"] ?? 15) / 2);
+    const found = [];
+    for (const way of [-1, 1])
+      for (let k = node + way; Math.abs(k - node) <= half && this.follows.has(way > 0 ? k - 1 : k); k += way) found.push(k);
+    return found;
+  }
+
   // Shows scans on the map: a list of [node, pose, colour].
   showScans(scans) {
     this.scans.clearLayers();
@@ -273,6 +285,7 @@ class MapView {
       for (const [x, y] of this.scanPoints(node, pose))
         this.scans.addLayer(L.circleMarker([y, x], { radius: 2, stroke: false, fill: true, fillColor: colour, fillOpacity: 0.9, interactive: false }));
     const points = scans.map(([, pose]) => [pose[1], pose[0]]);
+    if (points.length > 1) this.scans.addLayer(L.polyline(points, { color: COLOURS.truth, weight: 2, interactive: false }));
     if (points.length && !this.map.getBounds().contains(points)) this.map.fitBounds(L.latLngBounds(points).pad(1), { maxZoom: 5 });
   }
 

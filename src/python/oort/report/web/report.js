@@ -8,6 +8,9 @@ function fillTables(data) {
   const changed = data.changed_parameters.map(({ path, value, default: usual }) => row([path, `${value} (default ${usual})`]));
   document.querySelector("#changed").append(...(changed.length ? changed : [row(["all", "at their defaults"])]));
   document.querySelector("#parameters").append(...Object.entries(data.parameters).map(row));
+  const { troubles = [] } = data; // none in a run of an earlier version
+  document.querySelector("#troubles").append(...troubles.map(({ text, advice }) => element("li", {}, element("b", {}, `${text}: `), advice)));
+  document.querySelector("#wrong").hidden = !troubles.length;
   const faults = data.odometry_faults.first.map((fault) => `odometry ${fault.kind} at ${seconds(fault.time - data.samples.begin)}: ${fault.distance.toFixed(2)} m, ${degrees(fault.angle)}`);
   const notes = [...data.notes, ...faults];
   document.querySelector("#notes").append(...(notes.length ? notes : ["nothing to note"]).map((note) => element("li", {}, note)));
