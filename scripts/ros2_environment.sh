@@ -35,7 +35,7 @@ if ! why=$("${pip[@]}" -r ros2/requirements-jazzy.txt 2>&1); then
   rm -rf "$venv"
   skip "its wheels cannot be installed ($(grep -m 1 ERROR <<< "$why" || tail -n 1 <<< "$why"))"
 fi
-"${pip[@]}" "pillow>=10.1" "rosbags>=0.11" "ruamel.yaml>=0.18" "tqdm>=4.64" "pytest>=7.2" "hypothesis>=6"
+"${pip[@]}" "pillow>=10.1" "rosbags>=0.11" "ruamel.yaml>=0.18" "tqdm>=4.64" "pytest>=7.2" "pytest-xdist>=3.3" "hypothesis>=6"
 
 # The wheels name the Python and the numpy of the machine that built them.
 include=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
