@@ -63,6 +63,55 @@ def test_rooms_and_furniture_of_a_house(folder: Path) -> None:
     np.testing.assert_allclose(plan.pieces[0].footprint.min(axis=0), [0.0, 5.0])
 
 
+def test_an_empty_wall_is_none(tmp_path: Path) -> None:
+    content = house()
+    content["doors"] = []
+    content["walls"][0]["empty"] = True
+    (tmp_path / "house.json").write_text(json.dumps(content))
+    plan = read_plan(tmp_path / "house.json")
+    assert distance_to_walls(plan.walls, 4.0, 1.5) == pytest.approx(1.5)
+    assert distance_to_walls(plan.walls, 4.0, 4.5) == pytest.approx(0.0)
+
+
+def test_a_door_of_the_first_files_is_where_its_offset_has_it(folder: Path, tmp_path: Path) -> None:
+    content = house()
+    for door in content["doors"]:
+        begin, end = door.pop("holePolygon")
+        door["boundingBox"] = {"min": begin | {"x": begin["x"] - 0.25}, "max": end | {"x": end["x"] - 0.25}}
+        door["assetOffset"] = {"x": 0.25, "y": 0.0, "z": 0.0}
+    (tmp_path / "house.json").write_text(json.dumps(content))
+    np.testing.assert_allclose(read_plan(tmp_path / "house.json").walls, plan_of(folder, "house.json").walls)
+
+
+def _sizes(**boxes: tuple[float, float, float]) -> dict[str, Any]:
+    kinds = [{"assetId": name, "boundingBox": dict(zip("xyz", box, strict=True))} for name, box in boxes.items()]
+    return {"Bed": kinds}
+
+
+def test_objects_have_the_sizes_of_their_assets(tmp_path: Path) -> None:
+    bed = {"assetId": "Bed_1", "position": {"x": 1.0, "y": 0.0, "z": 2.0}, "rotation": {"x": 0, "y": 30.0, "z": 0}}
+    picture = {"assetId": "Picture_1", "position": {"x": 1.0, "y": 1.5, "z": 2.0}}
+    (tmp_path / "house.json").write_text(json.dumps(changed(objects=[bed, picture, {"assetId": "Cup_1"}])))
+    (tmp_path / "assets.json").write_text(json.dumps(_sizes(Bed_1=(1.0, 0.6, 2.0), Picture_1=(0.5, 0.4, 0.02))))
+    assert "3 of 3 objects do not tell their size" in read_plan(tmp_path / "house.json").notes[0]
+    plan = read_plan(tmp_path / "house.json", assets=tmp_path / "assets.json")
+    assert "1 of 3 objects" in plan.notes[0]
+    (piece,) = plan.pieces
+    right = np.array([np.cos(np.pi / 6), -np.sin(np.pi / 6)])  # of the bed: clockwise seen from above
+    ahead = np.array([np.sin(np.pi / 6), np.cos(np.pi / 6)])
+    corners = [[1.0, 2.0] + a * right + b * ahead for a, b in ((-0.5, -1.0), (0.5, -1.0), (0.5, 1.0), (-0.5, 1.0))]
+    np.testing.assert_allclose(piece.footprint, corners)
+
+
+@pytest.mark.parametrize(
+    "content", ["{", [1], {"Bed": [{"assetId": "Bed_1"}]}, _sizes(Bed_1=(float("nan"), 1.0, 1.0)), {"Bed": 3}]
+)
+def test_sizes_that_are_none_are_told(content: Any, folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "assets.json").write_text(content if isinstance(content, str) else json.dumps(content))
+    with pytest.raises(InputError, match=r"assets\.json is no"):
+        read_plan(folder / "house.json", assets=tmp_path / "assets.json")
+
+
 def drive_through(plan: Plan, seed: int = 1) -> Drive:
     return simulate_drive(seed, SHORT, plan)
 

@@ -69,16 +69,17 @@ def _config(args: argparse.Namespace) -> SimulationConfig:
 def _run(args: argparse.Namespace) -> None:
     plan = None
     if args.plan is not None:
-        plan = read_plan(args.plan, args.resolution, tuple(args.dock) if args.dock else None)
-    elif args.dock or args.resolution is not None:
-        raise InputError("--dock and --resolution are of a floor plan; say which with --plan")
+        plan = read_plan(args.plan, args.resolution, tuple(args.dock) if args.dock else None, args.assets)
+    elif args.dock or args.resolution is not None or args.assets is not None:
+        raise InputError("--dock, --resolution and --assets are of a floor plan; say which with --plan")
     name = args.name or f"{args.scene if plan is None else args.plan.stem}_{args.seed}"
     try:
         drive = simulate_drive(args.seed, _config(args), plan)
     except (ValueError, RuntimeError) as error:  # of numbers that cannot be; of a plan that the driver loses its way in
         raise InputError(str(error)) from None
     paths = [str(path) for path in write_drive(drive, args.out, name, args.picture, args.format)]
-    lines = [_summary(drive), *paths]
+    notes = [] if plan is None else [f"note: {note}" for note in plan.notes]
+    lines = [_summary(drive), *notes, *paths]
     if drive.config.sensor.sweep_seconds and "carmen" in args.format:
         lines.append("no CARMEN log: it could not tell when each beam of a sweep was measured")
     print_result(args, _figures(drive) | {"written": paths}, "\n".join(lines))
@@ -130,6 +131,9 @@ def _add_home_arguments(parser: argparse.ArgumentParser) -> None:
         help="a given home: a picture, a map of map_server, ProcTHOR's JSON",
     )
     home.add_argument("--resolution", type=float, metavar="M", help="metres of a picture's pixel")
+    home.add_argument(
+        "--assets", type=Path, metavar="FILE", help="ProcTHOR's asset-database.json: the sizes of a house's objects"
+    )
     add_pose_argument(home, "--dock", "the docked base on the plan [m, rad]; at some wall if not given")
     home.add_argument("--way", type=int, default=0, metavar="N", help="another drive through the same home")
     home.add_argument("--moved", type=int, default=0, metavar="N", help="pieces of furniture moved since drive 0")

@@ -39,6 +39,8 @@ class Plan:
     """furniture"""
     dock: tuple[float, float, float] | None = None
     """the pose of the docked base; chosen at random if None"""
+    notes: tuple[str, ...] = ()
+    """what of the file is not in the plan"""
 
 
 def furnish_plan(plan: Plan, rng: np.random.Generator) -> tuple[Home, FloorPlan, ClearanceGrid]:
