@@ -55,6 +55,15 @@ def test_scans_wait_for_their_odometry(live: LiveSession, recorder: Recorder) ->
     assert not live.figures.drops.counts
 
 
+def test_the_delay_ends_when_the_pose_is_told(live: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not when it has been looked whether anything is wrong, every so many scans."""
+    monkeypatch.setattr(live, "_look_for_troubles", lambda _: time.sleep(0.3))
+    live.call("map/start", [""])
+    driven(live, 2)  # the second waits for the first
+    spread = live.figures.delays.spread
+    assert spread is not None and spread.p50 < 250.0
+
+
 def test_a_call_does_not_wait_for_ever_on_odometry(live: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("oort.live.inbox.PATIENCE_BEFORE_CALL", 0.2)
     live.call("map/start", [""])

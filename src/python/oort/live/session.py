@@ -237,8 +237,8 @@ class LiveSession:
         self._look_at_dock()
         self.figures.mapped(result, time.monotonic() - started, item.scan)
         self._listener.scan_taken(self._snapshot)
-        self._look_for_troubles(item.scan)
         self.figures.delays.add(1e3 * (time.monotonic() - item.arrived))
+        self._look_for_troubles(item.scan)
 
     def _look_for_troubles(self, scan: Scan) -> None:
         self._session.observe(scan)
