@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -56,21 +57,32 @@ class Player:
 
     def play(self, seconds: float, calls: Sequence[tuple[float, Callable[[], object]]] = ()) -> None:
         """The first seconds of the drive, with calls at times of the drive."""
-        drive, begin, started = self._drive, self._drive.odometry_times[0], time.monotonic()
-        scan, waiting = 0, sorted(calls, key=lambda call: call[0])
-        for number, at in enumerate((drive.odometry_times - begin).tolist()):
-            if at > seconds:
-                break
-            while waiting and waiting[0][0] - begin < at:
-                waiting.pop(0)[1]()
-            time.sleep(max(0.0, started + at / self._rate - time.monotonic()))
-            stamp = self._peer.now()
-            x, y, theta = drive.T_odom_base[number].tolist()
-            self._tf(TFMessage(transforms=[transform(ODOM, BASE_FRAME, stamp, (x, y, theta))]))
-            if scan < len(drive.scan_stamps) and drive.scan_stamps[scan] == drive.odometry_stamps[number]:
-                self.sent.append(time.monotonic())
-                self._rover.scan(self._course, scan, stamp)
-                scan += 1
+        begin = self._drive.odometry_times[0]
+        # A robot drives on while it waits for an answer; if it stood, the scans that were due would come all at once.
+        with ThreadPoolExecutor(1) as caller:
+            made = []
+            started, waiting = time.monotonic(), sorted(calls, key=lambda call: call[0])
+            scan = 0
+            for number, at in enumerate((self._drive.odometry_times - begin).tolist()):
+                if at > seconds:
+                    break
+                while waiting and waiting[0][0] - begin < at:
+                    made.append(caller.submit(waiting.pop(0)[1]))
+                time.sleep(max(0.0, started + at / self._rate - time.monotonic()))
+                scan = self._tell(number, scan)
+            for call in made:
+                call.result()
+
+    def _tell(self, number: int, scan: int) -> int:
+        """Odometry and, if one was taken there, the scan; the number of the next."""
+        drive, stamp = self._drive, self._peer.now()
+        x, y, theta = drive.T_odom_base[number].tolist()
+        self._tf(TFMessage(transforms=[transform(ODOM, BASE_FRAME, stamp, (x, y, theta))]))
+        if scan == len(drive.scan_stamps) or drive.scan_stamps[scan] != drive.odometry_stamps[number]:
+            return scan
+        self.sent.append(time.monotonic())
+        self._rover.scan(self._course, scan, stamp)
+        return scan + 1
 
 
 class Poses:
