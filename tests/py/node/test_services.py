@@ -206,8 +206,8 @@ def test_pause_and_resume_from_paused(client: Client, robot: Robot) -> None:
 def test_start_goes_on_after_a_pause(client: Client, robot: Robot, path: str) -> None:
     client.call("map/start", "")
     robot.drive(SHORT)
-    nodes = client.call("map/num_nodes")
     client.call("map/pause")
+    nodes = client.call("map/num_nodes")  # of all scans: the pause comes after those that were sent before
     client.call("map/start", path)
     assert (client.state, client.call("map/name")) == ("mapping", path)
     robot.drive(COURSE[:2])
