@@ -74,7 +74,7 @@ class Robot:
         for publisher in (self._scans, self._tf, self._tf_static):
             publisher.unregister()
 
-    def wait_for_node(self, name: str = "/oort_slam", timeout: float = 10.0) -> None:
+    def wait_for_node(self, name: str = "/oort_slam", timeout: float = 30.0) -> None:
         """Waits until a node receives what the robot publishes."""
         deadline = time.monotonic() + timeout
         for publisher in (self._scans, self._tf, self._tf_static):
