@@ -250,6 +250,10 @@ def test_two_runs_side_by_side_and_over_each_other(page: Page, run: Path, tmp_pa
     page.get_by_label("over each other").check()
     assert not page.locator("#map-b").is_visible()
     assert page.locator("#map-a img.over").count() == 1
+    first, second = page.locator("#name").inner_text().split(" and ")
+    assert page.locator("#runs").inner_text().split() == [*first.split(), "(left)", *second.split(), "(right)"]
+    page.get_by_label("side by side").check()
+    assert page.locator("#map-a img.over").count() == 0
 
 
 def test_what_is_no_report_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -54,7 +54,9 @@ class Pair {
 
   show(mode) {
     this.pair.classList.toggle("one", mode === "over");
-    if (mode === "over") this.over.addTo(this.views[0].map);
+    const { map, layers } = this.views[0];
+    for (const { name, layer, on } of layers) if (on && name !== "walls") mode === "over" ? layer.remove() : layer.addTo(map);
+    if (mode === "over") this.over.addTo(map);
     else this.over.remove();
     this.views.forEach((view) => view.map.invalidateSize());
     this.views[0].fit();
@@ -85,6 +87,8 @@ async function main() {
   const data = await Data.load("oort-data");
   document.querySelector("#name").textContent = `${data.names[0]} and ${data.names[1]}`;
   document.querySelector("#kind").textContent = data.runs.map((run) => `${run.name}: ${run.kind}, ${run.samples.scans} scans`).join("; ");
+  const sides = ["left", "right"].flatMap((side, k) => [element("i", { style: `background:${RUN_COLOURS[k]}` }), `${data.names[k]} (${side}) `]);
+  document.querySelector("#runs").append(...sides);
   new Pair(data.runs);
   showApart(data.apart);
   fillTable("#figures", data.names, data.figures);
