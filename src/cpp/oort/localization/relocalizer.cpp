@@ -67,6 +67,21 @@ double theta_step(const frsm::Points& points, double moved) {
                     LocalizationTuning::kMaxThetaStep);
 }
 
+struct Searched {
+  frsm::Pose middle;
+  frsm::Window window;
+};
+
+Searched searched_on(const GridLimits& limits) {
+  const double half_x = 0.5 * limits.width * limits.resolution;
+  const double half_y = 0.5 * limits.height * limits.resolution;
+  return {{limits.origin_x + half_x, limits.origin_y + half_y, 0.0}, {half_x, half_y, M_PI}};
+}
+
+Searched searched_in(const SearchArea& area) {
+  return {to_frsm(area.T_map_sensor), {area.xy, area.xy, area.theta}};
+}
+
 bool same_place(const Pose2& a, const Pose2& b) {
   const Pose2 d = between(a, b);
   return d.translation().norm() < LocalizationTuning::kPeakSpacing &&
@@ -112,9 +127,6 @@ Relocalization Relocalizer::find(const std::vector<PlacedScan>& scans, const Sea
 std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& scans, const frsm::Points& points,
                                                 const SearchEffort& effort, const frsm::OnLookups& on_lookups,
                                                 frsm::Peaks& peaks) const {
-  const GridLimits& limits = map_->space().limits();
-  const double half_x = 0.5 * limits.width * limits.resolution;
-  const double half_y = 0.5 * limits.height * limits.resolution;
   frsm::PeakParams search;
   search.floor = std::max({min_score_, LocalizationTuning::kMinScore, effort.floor});
   search.ratio = effort.ratio;
@@ -124,8 +136,8 @@ std::vector<Hypothesis> Relocalizer::hypotheses(const std::vector<PlacedScan>& s
   search.max_peaks = effort.max_peaks;
   const frsm::Points sparse = at_most(effort.max_points, one_per_cell(points, LocalizationTuning::kSearchVoxel));
   search.theta_step = theta_step(sparse, effort.turn_cells * map_->coarse().params().cell);
-  peaks = frsm::find_peaks(map_->coarse(), sparse, {limits.origin_x + half_x, limits.origin_y + half_y, 0.0},
-                           {half_x, half_y, M_PI}, search, on_lookups);
+  const Searched searched = effort.area ? searched_in(*effort.area) : searched_on(map_->space().limits());
+  peaks = frsm::find_peaks(map_->coarse(), sparse, searched.middle, searched.window, search, on_lookups);
   if (!peaks.complete && !effort.weighs_incomplete) return {};
   const double reach = std::max(LocalizationTuning::kFineReach, 2.0 * map_->coarse().params().cell);
   std::vector<Hypothesis> found;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <frsm/peaks.hpp>
 #include <memory>
@@ -42,8 +43,16 @@ struct Relocalization {
   double lead() const;
 };
 
+/// Where a place is looked for.
+struct SearchArea {
+  Pose2 T_map_sensor;   ///< in the middle
+  double xy = 0.0;      ///< half width [m]
+  double theta = M_PI;  ///< half width [rad]
+};
+
 /// What a search may cost at most.
 struct SearchEffort {
+  std::optional<SearchArea> area;       ///< the whole map at all headings if there is none
   double floor = 0.0;                   ///< places of a lower score are not looked at, whatever the parameters say
   double turn_cells = 1.0;              ///< by which a step of the heading moves the farthest point, at most
   double ratio = 0.75;                  ///< places of less than this share of the best score are no rivals

@@ -105,10 +105,7 @@ void LoopClosureBuilder::look_before(const Map& map, const TrajectorySegments& s
     uncertainty_.update(map.graph);
     from_query_ = uncertainty_.from(map.graph, query);
   }
-  const auto strides = [&](std::uint64_t node) {
-    return segments.travel_between(0, node) / LoopClosureTuning::kWideStride;
-  };
-  const bool looks_wide = query == 0 || strides(query) != strides(query - 1);
+  const bool looks_wide = this->looks_wide(segments, query);
   for (const std::uint64_t candidate : candidates(map, segments, query, end)) {
     const SearchWindow window = this->window(map, query, candidate);
     const bool wide = search_.is_adaptive() && is_wide(window);
@@ -116,6 +113,13 @@ void LoopClosureBuilder::look_before(const Map& map, const TrajectorySegments& s
     if (wide && !looks_wide) continue;
     waiting_.push_back({query, candidate, window});
   }
+}
+
+bool LoopClosureBuilder::looks_wide(const TrajectorySegments& segments, std::uint64_t query) {
+  const auto strides = [&](std::uint64_t node) {
+    return segments.travel_between(0, node) / LoopClosureTuning::kWideStride;
+  };
+  return query == 0 || strides(query) != strides(query - 1);
 }
 
 std::vector<Closure> LoopClosureBuilder::work(const Map& map, const TrajectorySegments& segments, ClosureCounts& counts,

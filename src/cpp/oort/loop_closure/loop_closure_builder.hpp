@@ -43,6 +43,8 @@ class LoopClosureBuilder {
  public:
   explicit LoopClosureBuilder(const Parameters& parameters);
 
+  const LoopSearch& search() const { return search_; }
+
   /// Notes what is worth an attempt now that the newest node, `query`, is there.
   void look(const Map& map, const TrajectorySegments& segments, std::uint64_t query, WorkMeter* meter = nullptr) {
     look_before(map, segments, query, map.graph.nodes.size(), meter);
@@ -51,6 +53,9 @@ class LoopClosureBuilder {
   /// The same of any node, with candidates among the nodes before `end` only.
   void look_before(const Map& map, const TrajectorySegments& segments, std::uint64_t query, std::uint64_t end,
                    WorkMeter* meter = nullptr);
+
+  /// Whether the node is one of those that look for loops in wide windows, too.
+  static bool looks_wide(const TrajectorySegments& segments, std::uint64_t query);
 
   bool has_work() const { return !waiting_.empty(); }
 

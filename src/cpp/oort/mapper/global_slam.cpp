@@ -24,7 +24,11 @@ bool is_unknown(const NodeAddition& node) {
 }  // namespace
 
 GlobalSlam::GlobalSlam(const Parameters& parameters)
-    : parameters_(parameters), loops_(parameters), docks_(parameters), segment_search_(parameters) {
+    : parameters_(parameters),
+      loops_(parameters),
+      docks_(parameters),
+      segment_search_(parameters),
+      drift_search_(parameters, loops_.search()) {
   begin_session();
 }
 
@@ -38,11 +42,13 @@ void GlobalSlam::set_map(const Map& map) {
 
 void GlobalSlam::begin_session() {
   loops_ = LoopClosureBuilder(parameters_);
-  not_looked_from_.clear();
+  to_look_from_ = LookQueue();
   session_begin_ = map_.node_count();
   former_.reset();
   former_stays_ = former_gave_way_ = false;
   segment_search_ = SegmentSearch(parameters_);
+  drift_search_ = DriftSearch(parameters_, loops_.search());
+  drift_search_.begin(map_.segments());
   watch_.forget();
   reduction_ = {std::max(MapperTuning::kFirstReduction, MapperTuning::kReductionGrowth * map_.node_count()), false};
 }
@@ -55,7 +61,7 @@ void GlobalSlam::begin_schedule() {
 }
 
 void GlobalSlam::add(const NodeAddition& node) {
-  not_looked_from_.push_back(map_.node_count());
+  to_look_from_.add(map_.node_count());
   if (node.begins_segment && !node.edges.empty()) {
     segment_search_.begin(map_.node_count(), is_unknown(node) ? Doubt::kAll : Doubt::kOdometry);
   }
@@ -63,8 +69,8 @@ void GlobalSlam::add(const NodeAddition& node) {
 }
 
 bool GlobalSlam::has_work() const {
-  return !dock_requests_.empty() || !not_looked_from_.empty() || loops_.has_work() ||
-         segment_search_.is_due(map_.node_count()) ||
+  return !dock_requests_.empty() || !to_look_from_.empty() || loops_.has_work() ||
+         segment_search_.is_due(map_.node_count()) || may_be_drifted() ||
          schedule_.due(map_.node_count(), map_.node_count()) != SolveSchedule::Extent::kNothing || is_reduction_due();
 }
 
@@ -80,11 +86,15 @@ Correction GlobalSlam::work(WorkMeter& meter) {
     const WorkClock clock(work_seconds_.matching);
     return placed(segment_search_.look(map(), map_.segments(), &meter));
   }
-  if (!not_looked_from_.empty()) {
+  if (may_be_drifted()) {
+    const WorkClock clock(work_seconds_.matching);
+    return closed(drift_search_.look(map(), map_.segments(), &meter), meter);
+  }
+  if (to_look_from_.has_fresh() || (!to_look_from_.empty() && !loops_.has_work())) {
     const WorkClock clock(work_seconds_.candidates);
-    loops_.look(map(), map_.segments(), not_looked_from_.front(), &meter);
-    watch(not_looked_from_.front(), meter);
-    not_looked_from_.pop_front();
+    const auto [node, is_new] = to_look_from_.take();
+    loops_.look(map(), map_.segments(), node, &meter);
+    if (is_new) watch(node, meter);
     return nothing();
   }
   const WorkClock clock(work_seconds_.matching);
@@ -110,7 +120,7 @@ Correction GlobalSlam::finish() {
 /// While there is nothing else to do; later, for want of such a time.
 bool GlobalSlam::is_reduction_due() const {
   if (parameters_.keep_views == 0 || reduction_.is_under_way) return false;
-  const bool is_busy = segment_search_.is_looking() || !not_looked_from_.empty() || loops_.has_work();
+  const bool is_busy = segment_search_.is_looking() || !to_look_from_.empty() || loops_.has_work();
   return map_.node_count() >= (is_busy ? reduction_.due + reduction_.due / 2 : reduction_.due);
 }
 
@@ -148,12 +158,9 @@ void GlobalSlam::go_on_with(const Pruned& pruned, std::uint64_t size) {
   map_.reduce(pruned.map, pruned.nodes);
   closure_log_.renumber(pruned.nodes);
   const std::uint64_t settled = parameters_.frozen_map ? session_begin_ : size - MapperTuning::kUnsettledNodes;
-  std::deque<std::uint64_t> not_looked_from;
-  for (const std::uint64_t node : not_looked_from_) {
-    if (pruned.nodes.kept[node]) not_looked_from.push_back(pruned.nodes.of(node));
-  }
+  const LookQueue to_look_from = to_look_from_.renumbered(pruned.nodes);
   begin_session();
-  not_looked_from_ = std::move(not_looked_from);
+  to_look_from_ = to_look_from;
   begin_schedule();
   session_begin_ = pruned.nodes.left_before(settled);
   reduction_.is_under_way = true;
@@ -181,12 +188,8 @@ Correction GlobalSlam::link_docks(WorkMeter* meter) {
 }
 
 void GlobalSlam::work_off(Correction& all) {
-  while (!not_looked_from_.empty() || loops_.has_work()) {
-    if (!not_looked_from_.empty()) {
-      loops_.look(map(), map_.segments(), not_looked_from_.front(), nullptr);
-      not_looked_from_.pop_front();
-      continue;
-    }
+  while (!to_look_from_.empty() || loops_.has_work()) {
+    while (!to_look_from_.empty()) loops_.look(map(), map_.segments(), to_look_from_.take().node, nullptr);
     const WorkClock clock(work_seconds_.matching);
     const Correction some = found(trusted(loops_.work_off(map(), map_.segments(), counts_.loops, closure_log_)));
     all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
@@ -262,15 +265,35 @@ Correction GlobalSlam::placed(const SegmentFinding& finding) {
   }
   Correction correction = found(finding.closures);
   if (finding.disproved || finding.trusted) correction.segments = {finding};
-  if (!finding.disproved) return correction;
-  if (finding.closures.empty()) return correction;
+  if (!finding.disproved || finding.closures.empty()) return correction;
   // Solving begins where the closures say: from elsewhere it would rather switch them off.
   for (Node& node : map_.edit().graph.nodes) {
     if (!contains(finding.nodes, node.id)) continue;
     node.pose = finding.T_new_old * node.pose;
-    not_looked_from_.push_back(node.id);
+    to_look_from_.add(node.id);
   }
   correction.solution = map_.solution();
+  return correction;
+}
+
+/// Where nothing tells where the robot is, it is looked for everywhere (SegmentSearch).
+bool GlobalSlam::may_be_drifted() const {
+  return !segment_search_.is_lost() && drift_search_.is_due(map_.segments());
+}
+
+/// Closes a loop. What that moves looks for loops again: some were too far off.
+Correction GlobalSlam::closed(const std::vector<Closure>& closures, WorkMeter& meter) {
+  if (closures.empty()) return nothing();
+  const std::vector<Pose2> poses = map_.solution().poses;
+  Correction correction = found(closures);
+  solve_anew(MapperTuning::kIterations, &meter);
+  correction.solution = map_.solution();
+  correction.counts = counts_;
+  const auto is_on = [](const SwitchableEdge& edge) { return edge.is_on(); };
+  const auto last = map().graph.switchable_edges.rbegin();
+  const auto count = static_cast<std::ptrdiff_t>(closures.size());
+  if (std::none_of(last, last + count, is_on)) drift_search_.refuted(map_.segments());
+  for (const std::uint64_t node : nodes_to_look_again(map(), map_.segments(), poses)) to_look_from_.add_again(node);
   return correction;
 }
 

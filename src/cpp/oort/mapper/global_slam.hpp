@@ -13,8 +13,10 @@
 #include "oort/loop_closure/dock_graph_builder.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
 #include "oort/maintenance/prune.hpp"
+#include "oort/mapper/drift_search.hpp"
 #include "oort/mapper/former_map.hpp"
 #include "oort/mapper/growing_map.hpp"
+#include "oort/mapper/look_queue.hpp"
 #include "oort/mapper/place_watch.hpp"
 #include "oort/mapper/segment_search.hpp"
 #include "oort/mapper/solve_schedule.hpp"
@@ -92,6 +94,8 @@ class GlobalSlam {
   std::vector<Closure> trusted(std::vector<Closure> closures) const;
   void watch(std::uint64_t node, WorkMeter& meter);
   Correction placed(const SegmentFinding& finding);
+  bool may_be_drifted() const;
+  Correction closed(const std::vector<Closure>& closures, WorkMeter& meter);
   void work_off(Correction& all);
   void tie_loose_parts(Correction& all);
   Correction solved();
@@ -113,14 +117,15 @@ class GlobalSlam {
   LoopClosureBuilder loops_;
   DockGraphBuilder docks_;
   SegmentSearch segment_search_;
+  DriftSearch drift_search_;
   PlaceWatch watch_;
   SolveSchedule schedule_;
-  std::deque<std::uint64_t> not_looked_from_;  // nodes for which no candidates were looked for yet
-  std::uint64_t session_begin_ = 0;            // the session's first node
-  std::optional<FormerMap> former_;            // what is before it, once something was solved
-  bool former_stays_ = false;                  // whether it is where it was at the last solution
-  bool former_gave_way_ = false;               // in this session: its nodes do not jump to and fro
-  std::deque<std::uint64_t> dock_requests_;    // the nodes to be linked to the dock
+  LookQueue to_look_from_;
+  std::uint64_t session_begin_ = 0;          // the session's first node
+  std::optional<FormerMap> former_;          // what is before it, once something was solved
+  bool former_stays_ = false;                // whether it is where it was at the last solution
+  bool former_gave_way_ = false;             // in this session: its nodes do not jump to and fro
+  std::deque<std::uint64_t> dock_requests_;  // the nodes to be linked to the dock
   Reduction reduction_;
   std::vector<bool> is_on_;  // each switchable edge, at the last solution
   GlobalCounts counts_;

@@ -18,14 +18,23 @@ namespace {
 
 /// What a node and those before it saw, oldest first, each where the trajectory has it as seen from the node.
 std::vector<PlacedScan> views_of(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
-                                 std::uint64_t node) {
-  const std::size_t count = std::min<std::size_t>(MapperTuning::kNodesPerSearch, node - first + 1);
-  const std::vector<PlacedNode> nodes = walk_trajectory(map, segments, node, Direction::kBackward, count);
+                                 std::uint64_t node, double spacing = 0.0) {
+  const std::uint64_t most = MapperTuning::kNodesPerSearch;
+  const std::uint64_t walked = spacing > 0.0 ? MapperTuning::kNodesWalked : most;
   std::vector<PlacedScan> views;
-  for (auto placed = nodes.rbegin(); placed != nodes.rend(); ++placed) {
-    views.push_back({map.clouds[placed->node], placed->T_origin_node});
+  for (const PlacedNode& placed :
+       walk_trajectory(map, segments, node, Direction::kBackward, std::min(walked, node - first + 1))) {
+    const bool is_apart =
+        views.empty() || between(views.back().T_odom_sensor, placed.T_origin_node).translation().norm() >= spacing;
+    if (is_apart) views.push_back({map.clouds[placed.node], placed.T_origin_node});
+    if (views.size() == most) break;
   }
+  std::reverse(views.begin(), views.end());
   return views;
+}
+
+double apart(const Map& map, std::uint64_t a, std::uint64_t b) {
+  return (map.graph.nodes[a].pose.translation() - map.graph.nodes[b].pose.translation()).norm();
 }
 
 /// Of following every beam of the views through a grid.
@@ -39,12 +48,13 @@ double work_of_weighing(const std::vector<PlacedScan>& views, double cell) {
 
 }  // namespace
 
-bool PlaceFinder::use(const Map& map, const std::vector<std::uint64_t>& nodes, bool anew, WorkMeter* meter) {
+bool PlaceFinder::use(const Map& map, const std::vector<std::uint64_t>& nodes, bool anew, WorkMeter* meter,
+                      double spacing) {
   if (nodes.empty()) return false;
-  const bool is_older = reference_ && nodes_.back() <= nodes.back();
-  const bool is_like_new = is_older && map.graph.nodes.size() < drawn_at_ + nodes_.size() / MapperTuning::kRedrawParts;
-  if (is_older && ((is_like_new && !anew) || (nodes_ == nodes && !has_moved(map)))) return true;
-  draw(map, nodes, meter);
+  const bool is_older = reference_ && given_.back() <= nodes.back();
+  const bool is_like_new = is_older && map.graph.nodes.size() < drawn_at_ + given_.size() / MapperTuning::kRedrawParts;
+  if (is_older && ((is_like_new && !anew) || (given_ == nodes && !has_moved(map)))) return true;
+  draw(map, nodes, spacing, meter);
   return reference_ != nullptr;
 }
 
@@ -56,9 +66,12 @@ bool PlaceFinder::has_moved(const Map& map) const {
   return false;
 }
 
-void PlaceFinder::draw(const Map& map, const std::vector<std::uint64_t>& nodes, WorkMeter* meter) {
+void PlaceFinder::draw(const Map& map, const std::vector<std::uint64_t>& nodes, double spacing, WorkMeter* meter) {
   forget();
-  nodes_ = nodes;
+  given_ = nodes;
+  for (const std::uint64_t node : nodes) {
+    if (nodes_.empty() || apart(map, nodes_.back(), node) >= spacing) nodes_.push_back(node);
+  }
   drawn_at_ = map.graph.nodes.size();
   std::uint64_t points = 0;
   for (const std::uint64_t node : nodes_) {
@@ -75,6 +88,7 @@ void PlaceFinder::draw(const Map& map, const std::vector<std::uint64_t>& nodes, 
 }
 
 void PlaceFinder::forget() {
+  given_.clear();
   nodes_.clear();
   poses_.clear();
   reference_.reset();
@@ -82,16 +96,18 @@ void PlaceFinder::forget() {
 }
 
 Look PlaceFinder::find(const Map& map, const TrajectorySegments& segments, std::uint64_t first, std::uint64_t node,
-                       WorkMeter* meter) const {
+                       WorkMeter* meter, const PlaceSearch& search) const {
   SearchEffort effort;
+  effort.area = search.area;
+  if (effort.area) effort.area->T_map_sensor = drawn(map, effort.area->T_map_sensor);
   effort.floor = MapperTuning::kLeastScore;
   effort.turn_cells = MapperTuning::kTurnCells;
   effort.ratio = MapperTuning::kRivalScore;
   effort.max_points = MapperTuning::kSearchPoints;
-  effort.max_expansions = MapperTuning::kSearchExpansions;
-  effort.max_expansions_to_first = MapperTuning::kExpansionsToFirst;
+  effort.max_expansions = search.max_expansions;
+  effort.max_expansions_to_first = search.max_expansions / MapperTuning::kExpansionsToFirst;
   effort.max_peaks = MapperTuning::kSearchPeaks;
-  effort.min_support = MapperTuning::kWeakSupport;
+  effort.min_support = search.least_support;
   effort.weighs_incomplete = false;
   frsm::OnLookups on_lookups;
   if (meter != nullptr) {
@@ -99,14 +115,14 @@ Look PlaceFinder::find(const Map& map, const TrajectorySegments& segments, std::
       charge(meter, MapperTuning::kWorkPerLookup * static_cast<double>(lookups));
     };
   }
-  const std::vector<PlacedScan> views = views_of(map, segments, first, node);
+  const std::vector<PlacedScan> views = views_of(map, segments, first, node, search.view_spacing);
   charge(meter, MapperTuning::kWeighedPlaces * work_of_weighing(views, reference_->space().limits().resolution));
   const Relocalization found = relocalizer_->find(views, effort, on_lookups);
   if (!found.found()) {
     return {std::nullopt, !found.stands_out || found.rejection == Rejection::kSearchLowSupport};
   }
   const Support& support = found.best->support;
-  const bool is_weak = support.value() < parameters_.localization.relocalizer.min_support;
+  const bool is_weak = search.weighs && support.value() < parameters_.localization.relocalizer.min_support;
   if (is_weak && support.blocked + support.in_free > MapperTuning::kWeakContradictions * support.points) return {};
   const Pose2& T_drawn_node = found.best->T_map_sensor;
   const std::size_t nearest = nearest_drawn(T_drawn_node);
@@ -120,9 +136,7 @@ PlaceFinder::Fit PlaceFinder::fit(const Map& map, const TrajectorySegments& segm
                                   std::uint64_t node, WorkMeter* meter) const {
   const std::vector<PlacedScan> views = views_of(map, segments, first, node);
   charge(meter, work_of_weighing(views, reference_->space().limits().resolution));
-  const std::size_t nearest = nearest_to(map, map.graph.nodes[node].pose);
-  const Pose2 T_drawn_node =
-      poses_[nearest] * between(map.graph.nodes[nodes_[nearest]].pose, map.graph.nodes[node].pose);
+  const Pose2 T_drawn_node = drawn(map, map.graph.nodes[node].pose);
   Support support;
   for (const PlacedScan& view : views) {
     reference_->weigh(view.cloud, T_drawn_node * view.T_odom_sensor, support);
@@ -155,6 +169,12 @@ Closure PlaceFinder::closure(const FoundPlace& place, const Map& map) const {
   const Eigen::Matrix3d covariance = rotate_covariance(place.covariance, -place.T_map_node.theta);
   return {place.node, nearest, between(place.T_map_node, map.graph.nodes[nearest].pose),
           covariance + Eigen::Matrix3d(sigma.cwiseAbs2().asDiagonal()), 1.0};
+}
+
+/// A pose of the map on what was drawn.
+Pose2 PlaceFinder::drawn(const Map& map, const Pose2& pose) const {
+  const std::size_t nearest = nearest_to(map, pose);
+  return poses_[nearest] * between(map.graph.nodes[nodes_[nearest]].pose, pose);
 }
 
 /// Of the drawn nodes, by their place among them: as they were drawn,

@@ -11,6 +11,7 @@
 #include "oort/loop_closure/closure.hpp"
 #include "oort/map/map.hpp"
 #include "oort/map/trajectory_segments.hpp"
+#include "oort/mapper/tuning.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -29,6 +30,17 @@ struct Look {
   bool fits_nowhere = false;         ///< no place of the map looks like what was seen
 };
 
+/// How a node is looked for.
+struct PlaceSearch {
+  double view_spacing = 0.0;       ///< [m] between the views that are looked for together; 0: each of the nodes before
+  std::optional<SearchArea> area;  ///< of the map, if it is not looked for everywhere
+  std::size_t max_expansions = MapperTuning::kSearchExpansions;
+  double least_support = MapperTuning::kWeakSupport;  ///< of an answer
+  /// Whether an answer of less support than a robot is found with on a saved map counts half, and not at all where
+  /// something speaks against it.
+  bool weighs = true;
+};
+
 /// Finds nodes on a part of the map that they do not hang on, at all headings and without a guess (Relocalizer).
 class PlaceFinder {
  public:
@@ -36,13 +48,13 @@ class PlaceFinder {
 
   /// Looks on these nodes from now on, or on what was drawn of earlier ones if they are few more: then places are
   /// moved as the drawn nodes next to them were. `anew`: not if there are any more, or if a solution has moved them.
-  /// False if they are too far apart to be drawn.
-  bool use(const Map& map, const std::vector<std::uint64_t>& nodes, bool anew, WorkMeter* meter);
+  /// One is drawn each `spacing` [m] of the way. False if they are too far apart to be drawn.
+  bool use(const Map& map, const std::vector<std::uint64_t>& nodes, bool anew, WorkMeter* meter, double spacing = 0.0);
   void forget();
 
   /// By what a node saw and those before it, none before `first`.
   Look find(const Map& map, const TrajectorySegments& segments, std::uint64_t first, std::uint64_t node,
-            WorkMeter* meter) const;
+            WorkMeter* meter, const PlaceSearch& search = {}) const;
 
   /// How what they saw fits where the map has the node.
   struct Fit {
@@ -60,14 +72,16 @@ class PlaceFinder {
 
  private:
   bool has_moved(const Map& map) const;
-  void draw(const Map& map, const std::vector<std::uint64_t>& nodes, WorkMeter* meter);
+  void draw(const Map& map, const std::vector<std::uint64_t>& nodes, double spacing, WorkMeter* meter);
+  Pose2 drawn(const Map& map, const Pose2& pose) const;
   std::size_t nearest_drawn(const Pose2& T_drawn_node) const;
   std::size_t nearest_to(const Map& map, const Pose2& T_map_node) const;
 
   Parameters parameters_;
-  std::vector<std::uint64_t> nodes_;
-  std::vector<Pose2> poses_;    // when they were drawn
-  std::uint64_t drawn_at_ = 0;  // number of nodes of the whole map then
+  std::vector<std::uint64_t> given_;  // nodes to look on, and those of them
+  std::vector<std::uint64_t> nodes_;  // that are drawn,
+  std::vector<Pose2> poses_;          // where they were then
+  std::uint64_t drawn_at_ = 0;        // number of nodes of the whole map then
   std::shared_ptr<const ReferenceMap> reference_;
   std::unique_ptr<Relocalizer> relocalizer_;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "oort/maintenance/tied_segments.hpp"
+#include "oort/map/part_nodes.hpp"
 #include "oort/map/parts.hpp"
 #include "oort/map/tuning.hpp"
 #include "oort/mapper/tuning.hpp"
@@ -36,21 +37,6 @@ std::uint64_t first_doubtful(const TrajectorySegments& segments, std::uint64_t f
   return first;
 }
 
-/// The part that has the most of the first `count` nodes; of equal ones the oldest.
-std::uint64_t largest_part(const std::vector<std::uint64_t>& parts, std::uint64_t count) {
-  std::vector<std::uint64_t> sizes(parts.size(), 0);
-  for (std::uint64_t node = 0; node < count; ++node) ++sizes[parts[node]];
-  return static_cast<std::uint64_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-}
-
-std::vector<std::uint64_t> nodes_of(const std::vector<std::uint64_t>& parts, std::uint64_t part, std::uint64_t count) {
-  std::vector<std::uint64_t> nodes;
-  for (std::uint64_t node = 0; node < count; ++node) {
-    if (parts[node] == part) nodes.push_back(node);
-  }
-  return nodes;
-}
-
 std::vector<NodeRange> ranges_of(const std::vector<std::uint64_t>& parts, std::uint64_t part) {
   std::vector<NodeRange> ranges;
   for (std::uint64_t node = 0; node < parts.size(); ++node) {
@@ -61,34 +47,8 @@ std::vector<NodeRange> ranges_of(const std::vector<std::uint64_t>& parts, std::u
   return ranges;
 }
 
-Pose2 driven(const Map& map, const FoundPlace& from, const FoundPlace& to) {
-  return between(map.graph.nodes[from.node].pose, map.graph.nodes[to.node].pose);
-}
-
-double weight_of(const std::vector<FoundPlace>& answers) {
-  double weight = 0.0;
-  for (const FoundPlace& answer : answers) weight += answer.is_weak ? MapperTuning::kWeakWeight : 1.0;
-  return weight;
-}
-
-/// Whether the answers come from so far apart that they are no repetitions of each other.
-bool are_enough(const std::vector<FoundPlace>& answers, const Map& map) {
-  return weight_of(answers) >= MapperTuning::kAgreeingAnswers &&
-         driven(map, answers.front(), answers.back()).translation().norm() >= MapperTuning::kAnswersApart;
-}
-
-/// Keeps of the answers those that agree with a new one, and adds it. A weak one does not speak against others.
-void add_answer(std::vector<FoundPlace>& answers, const FoundPlace& answer, const Map& map) {
-  const auto disagrees = [&](const FoundPlace& other) { return !agree(other, answer, driven(map, other, answer)); };
-  const auto is_strong = [](const FoundPlace& other) { return !other.is_weak; };
-  if (answer.is_weak && std::any_of(answers.begin(), answers.end(), is_strong) &&
-      std::any_of(answers.begin(), answers.end(), disagrees)) {
-    return;
-  }
-  answers.erase(std::remove_if(answers.begin(), answers.end(), disagrees), answers.end());
-  const bool is_new =
-      answers.empty() || driven(map, answers.back(), answer).translation().norm() >= MapperTuning::kAnswerTravel;
-  if (is_new) answers.push_back(answer);
+bool are_enough(const PlaceAnswers& answers, const Map& map) {
+  return answers.are_enough(map, MapperTuning::kAgreeingAnswers, MapperTuning::kAnswersApart);
 }
 
 /// At the end, up to so many nodes of a segment.
@@ -207,7 +167,7 @@ bool SegmentSearch::refuses(const Closure& closure) const {
 }
 
 SegmentFinding SegmentSearch::take(const FoundPlace& answer, std::uint64_t first, const Map& map) {
-  add_answer(answers_, answer, map);
+  answers_.add(answer, map);
   if (!are_enough(answers_, map)) return {};
   SegmentFinding finding = placed(answers_, map);
   answers_.clear();
@@ -226,11 +186,11 @@ SegmentFinding SegmentSearch::take(const FoundPlace& answer, std::uint64_t first
 /// Of nodes that hang on the map by scans that fitted each other: what answers say is drift if odometry and scans may
 /// have drifted so far, and closures mend it. If not, the robot was carried.
 SegmentFinding SegmentSearch::take_suspect(const FoundPlace& answer, std::uint64_t first, const Map& map) {
-  add_answer(answers_, answer, map);
+  answers_.add(answer, map);
   if (!are_enough(answers_, map)) return {};
   SegmentFinding finding = placed(answers_, map);
-  const bool is_elsewhere = finding.disproved && !finder_.may_have_drifted(answers_.back(), map);
-  const bool is_proved = contradicts_mostly() || weight_of(answers_) >= MapperTuning::kAnswersAgainstMap;
+  const bool is_elsewhere = finding.disproved && !finder_.may_have_drifted(answers_.newest(), map);
+  const bool is_proved = contradicts_mostly() || answers_.weight() >= MapperTuning::kAnswersAgainstMap;
   if (is_elsewhere && !is_proved) return {};
   finding.nodes = {{first}};
   finding.disproved = finding.withdrawn = finding.begins_segment = is_elsewhere;
@@ -245,10 +205,10 @@ SegmentFinding SegmentSearch::take_suspect(const FoundPlace& answer, std::uint64
   return finding;
 }
 
-SegmentFinding SegmentSearch::placed(const std::vector<FoundPlace>& answers, const Map& map) const {
+SegmentFinding SegmentSearch::placed(const PlaceAnswers& answers, const Map& map) const {
   SegmentFinding finding;
-  for (const FoundPlace& answer : answers) finding.closures.push_back(finder_.closure(answer, map));
-  const FoundPlace& newest = answers.back();
+  for (const FoundPlace& answer : answers.all()) finding.closures.push_back(finder_.closure(answer, map));
+  const FoundPlace& newest = answers.newest();
   const Pose2& T_map_node = map.graph.nodes[newest.node].pose;
   finding.disproved = !agree({newest.node, T_map_node, newest.covariance}, newest, Pose2{});
   if (finding.disproved) finding.T_new_old = newest.T_map_node * inverse(T_map_node);
@@ -313,12 +273,12 @@ double SegmentSearch::contradicting_share(const NodeRange& segment, const Map& m
 /// contradicts the map: a bent map does so too.
 SegmentFinding SegmentSearch::look_for(const NodeRange& segment, const Map& map, const TrajectorySegments& segments,
                                        WorkBudget& budget) const {
-  std::vector<FoundPlace> answers;
+  PlaceAnswers answers;
   for (const std::uint64_t node : nodes_to_look_for(segment)) {
     if (budget.is_spent()) return {};
     const Look look = finder_.find(map, segments, segment.begin, node, &budget);
     if (!look.answer) continue;
-    add_answer(answers, *look.answer, map);
+    answers.add(*look.answer, map);
     if (are_enough(answers, map)) return placed(answers, map);
   }
   return {};

@@ -10,6 +10,7 @@
 #include "oort/map/map.hpp"
 #include "oort/map/node_range.hpp"
 #include "oort/map/trajectory_segments.hpp"
+#include "oort/mapper/place_answers.hpp"
 #include "oort/mapper/place_finder.hpp"
 #include "oort/parameters/parameters.hpp"
 
@@ -50,6 +51,8 @@ class SegmentSearch {
   void forget() { first_.reset(); }
 
   bool is_looking() const { return first_.has_value(); }
+  /// Whether nothing tells where the newest nodes are.
+  bool is_lost() const { return first_ && doubt_ == Doubt::kAll; }
   bool is_due(std::uint64_t node_count) const { return first_ && node_count >= due_; }
 
   /// Looks for the newest node.
@@ -79,19 +82,19 @@ class SegmentSearch {
                              WorkBudget& budget) const;
   SegmentFinding look_for(const NodeRange& segment, const Map& map, const TrajectorySegments& segments,
                           WorkBudget& budget) const;
-  SegmentFinding placed(const std::vector<FoundPlace>& answers, const Map& map) const;
+  SegmentFinding placed(const PlaceAnswers& answers, const Map& map) const;
 
   PlaceFinder finder_;
   std::optional<std::uint64_t> first_;
   std::uint64_t due_ = 0;   // number of nodes at which it is looked for next
   bool was_found_ = false;  // by a search, not by closures alone
   Doubt doubt_ = Doubt::kOdometry;
-  bool is_distrusted_ = false;       // closures put it where it is not
-  int looks_tied_ = 0;               // looks since it is tied,
-  int contradictions_ = 0;           // and those that contradict where it is
-  int quiet_looks_ = 0;              // in a row that tell nothing
-  std::uint64_t suspect_from_ = 0;   // the least number of nodes at which the map may be doubted again
-  std::vector<FoundPlace> answers_;  // that agree with each other, the oldest first
+  bool is_distrusted_ = false;      // closures put it where it is not
+  int looks_tied_ = 0;              // looks since it is tied,
+  int contradictions_ = 0;          // and those that contradict where it is
+  int quiet_looks_ = 0;             // in a row that tell nothing
+  std::uint64_t suspect_from_ = 0;  // the least number of nodes at which the map may be doubted again
+  PlaceAnswers answers_;
 };
 
 }  // namespace oort
