@@ -29,8 +29,12 @@ class DriftSearchTest : public ::testing::Test {
     for (const Pose2& place : lap) add(world_of_return, place, drift, 0.005);
   }
 
+  bool looks_while_driving_ = true;
   std::vector<Closure> closures_;
   std::vector<Pose2> truth_;
+  Map map_;
+  TrajectorySegments segments_;
+  DriftSearch search_{Parameters(), LoopClosureBuilder(Parameters()).search()};
 
  private:
   static std::vector<Pose2> thinned(const std::vector<Pose2>& way, std::size_t step) {
@@ -55,12 +59,9 @@ class DriftSearchTest : public ::testing::Test {
       edge.constraint.covariance = Eigen::Vector3d(1e-4, 1e-4, sigma_theta * sigma_theta).asDiagonal();
       map_.graph.edges.push_back(edge);
     }
-    if (closures_.empty() && search_.is_due(segments_)) closures_ = search_.look(map_, segments_, nullptr);
+    if (looks_while_driving_ && closures_.empty() && search_.is_due(segments_))
+      closures_ = search_.look(map_, segments_, nullptr);
   }
-
-  Map map_;
-  TrajectorySegments segments_;
-  DriftSearch search_{Parameters(), LoopClosureBuilder(Parameters()).search()};
 };
 
 TEST_F(DriftSearchTest, ALoopThatIsOpenByTenMetresIsClosed) {
@@ -71,6 +72,12 @@ TEST_F(DriftSearchTest, ALoopThatIsOpenByTenMetresIsClosed) {
     EXPECT_LT(off.translation().norm(), 0.1);
     EXPECT_LT(std::abs(off.theta), 0.03);
   }
+}
+
+TEST_F(DriftSearchTest, ADriveThatEndsWhereItBeganIsClosedAtTheEnd) {
+  looks_while_driving_ = false;
+  drive(make_room(), 0.4, 0.1);
+  EXPECT_GE(search_.look_at_end(map_, segments_).size(), 3u);
 }
 
 TEST_F(DriftSearchTest, AnotherRoomIsNotTakenForIt) {

@@ -44,21 +44,37 @@ void DriftSearch::refuted(const TrajectorySegments& segments) {
 }
 
 std::vector<Closure> DriftSearch::look(const Map& map, const TrajectorySegments& segments, WorkMeter* meter) {
-  const std::uint64_t newest = map.graph.nodes.size() - 1;
+  return look_for(map.graph.nodes.size() - 1, map, segments, meter);
+}
+
+std::vector<Closure> DriftSearch::look_at_end(const Map& map, const TrajectorySegments& segments) {
+  if (!loops_.is_adaptive()) return {};
+  const std::uint64_t count = map.graph.nodes.size();
+  answers_.clear();
+  std::vector<Closure> closures;
+  for (std::uint64_t back = MapperTuning::kDriftAtEnd; back > 0 && closures.empty(); --back) {
+    const std::uint64_t before = (back - 1) * MapperTuning::kDriftSpacingSoon;
+    if (before < count) closures = look_for(count - 1 - before, map, segments, nullptr);
+  }
+  return closures;
+}
+
+std::vector<Closure> DriftSearch::look_for(std::uint64_t node, const Map& map, const TrajectorySegments& segments,
+                                           WorkMeter* meter) {
   schedule(segments, MapperTuning::kDriftSpacing);
-  const std::uint64_t end = end_of_older(map, newest, MapperTuning::kDriftWay);
+  const std::uint64_t end = end_of_older(map, node, MapperTuning::kDriftWay);
   const std::vector<std::uint64_t> parts = tied_parts(map.graph, segments);
   const std::uint64_t main = largest_part(parts, end);
   // What nothing ties to it is looked for everywhere, by more (SegmentSearch).
-  if (end == 0 || parts[newest] != main) return {};
+  if (end == 0 || parts[node] != main) return {};
   charge(meter, LoopClosureTuning::kWorkPerNode * static_cast<double>(map.graph.nodes.size()) +
                     LoopClosureTuning::kWorkPerEdge *
                         static_cast<double>(map.graph.edges.size() + map.graph.switchable_edges.size()));
   RelativeUncertainty uncertainty;
   uncertainty.update(map.graph);
-  const Known known = uncertainty.from(map.graph, newest);
+  const Known known = uncertainty.from(map.graph, node);
   const std::vector<std::uint64_t> older = nodes_of(parts, main, end);
-  Doubt doubt = widest(map, newest);
+  Doubt doubt = widest(map, node);
   if (!narrow(doubt, map, older, known)) {
     answers_.clear();
     return {};
@@ -69,7 +85,7 @@ std::vector<Closure> DriftSearch::look(const Map& map, const TrajectorySegments&
   }
   const PlaceSearch search{MapperTuning::kDriftViewSpacing, doubt.area, doubt.max_expansions,
                            MapperTuning::kDriftSupport, false};
-  const Look look = finder_.find(map, segments, end, newest, meter, search);
+  const Look look = finder_.find(map, segments, end, node, meter, search);
   const bool is_news = look.answer && !is_known(finder_.closure(*look.answer, map).to, known) &&
                        finder_.may_have_drifted(*look.answer, map);
   if (is_news) answers_.add(*look.answer, map);
@@ -85,16 +101,16 @@ std::vector<Closure> DriftSearch::look(const Map& map, const TrajectorySegments&
 }
 
 /// Near where the map has the node mostly; where the last answer leads if there is one.
-DriftSearch::Doubt DriftSearch::widest(const Map& map, std::uint64_t newest) {
-  const Pose2& T_map_newest = map.graph.nodes[newest].pose;
+DriftSearch::Doubt DriftSearch::widest(const Map& map, std::uint64_t node) {
+  const Pose2& T_map_node = map.graph.nodes[node].pose;
   const bool is_far = ++looks_ % MapperTuning::kDriftFarEvery == 0;
   if (answers_.empty() && is_far) {
-    return {{T_map_newest, MapperTuning::kDriftFar, MapperTuning::kDriftFarTheta}, MapperTuning::kDriftFarExpansions};
+    return {{T_map_node, MapperTuning::kDriftFar, MapperTuning::kDriftFarTheta}, MapperTuning::kDriftFarExpansions};
   }
-  Pose2 middle = T_map_newest;
+  Pose2 middle = T_map_node;
   if (!answers_.empty()) {
     const FoundPlace& answer = answers_.newest();
-    middle = answer.T_map_node * between(map.graph.nodes[answer.node].pose, T_map_newest);
+    middle = answer.T_map_node * between(map.graph.nodes[answer.node].pose, T_map_node);
   }
   return {{middle, MapperTuning::kDriftNear, MapperTuning::kDriftNearTheta}, MapperTuning::kSearchExpansions};
 }

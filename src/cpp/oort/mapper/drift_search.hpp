@@ -29,6 +29,8 @@ class DriftSearch {
   bool is_due(const TrajectorySegments& segments) const;
   /// Looks for the newest node. Returns closures once answers agree.
   std::vector<Closure> look(const Map& map, const TrajectorySegments& segments, WorkMeter* meter);
+  /// When mapping ends: looks for the last nodes, of which some were passed over.
+  std::vector<Closure> look_at_end(const Map& map, const TrajectorySegments& segments);
   /// Closures that it gave are contradicted: looks no more for a while.
   void refuted(const TrajectorySegments& segments);
 
@@ -37,9 +39,11 @@ class DriftSearch {
     SearchArea area;
     std::size_t max_expansions = 0;
   };
-  using Known = std::vector<std::optional<Eigen::Matrix3d>>;  // by node; as seen from the newest
+  using Known = std::vector<std::optional<Eigen::Matrix3d>>;  // by node; as seen from the one looked for
 
-  Doubt widest(const Map& map, std::uint64_t newest);
+  std::vector<Closure> look_for(std::uint64_t node, const Map& map, const TrajectorySegments& segments,
+                                WorkMeter* meter);
+  Doubt widest(const Map& map, std::uint64_t node);
   bool narrow(Doubt& doubt, const Map& map, const std::vector<std::uint64_t>& older, const Known& known) const;
   bool is_known(std::uint64_t node, const Known& known) const;
   void schedule(const TrajectorySegments& segments, std::uint64_t spacing);

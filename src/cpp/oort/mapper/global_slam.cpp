@@ -88,7 +88,7 @@ Correction GlobalSlam::work(WorkMeter& meter) {
   }
   if (may_be_drifted()) {
     const WorkClock clock(work_seconds_.matching);
-    return closed(drift_search_.look(map(), map_.segments(), &meter), meter);
+    return closed(drift_search_.look(map(), map_.segments(), &meter), &meter);
   }
   if (to_look_from_.has_fresh() || (!to_look_from_.empty() && !loops_.has_work())) {
     const WorkClock clock(work_seconds_.candidates);
@@ -99,22 +99,6 @@ Correction GlobalSlam::work(WorkMeter& meter) {
   }
   const WorkClock clock(work_seconds_.matching);
   return found(trusted(loops_.work(map(), map_.segments(), counts_.loops, closure_log_, &meter)));
-}
-
-Correction GlobalSlam::finish() {
-  Correction all = link_docks();
-  work_off(all);
-  former_gave_way_ = false;  // all that there is to say was said
-  if (schedule_.pending() > 0 || !map().graph.switchable_edges.empty()) solve_anew(MapperTuning::kFinalIterations);
-  tie_loose_parts(all);
-  if (parameters_.final_refinement) counts_.refinement = refine(map_.edit(), held());
-  all.solution = map_.solution();
-  all.counts = counts_;
-  if (parameters_.keep_views > 0 && remove_outdated(map_.edit(), map_.segments(), session_begin_) > 0) {
-    all.clouds = map().clouds;
-    forget_submaps();
-  }
-  return all;
 }
 
 /// While there is nothing else to do; later, for want of such a time.
@@ -187,39 +171,6 @@ Correction GlobalSlam::link_docks(WorkMeter* meter) {
   return all;
 }
 
-void GlobalSlam::work_off(Correction& all) {
-  while (!to_look_from_.empty() || loops_.has_work()) {
-    while (!to_look_from_.empty()) loops_.look(map(), map_.segments(), to_look_from_.take().node, nullptr);
-    const WorkClock clock(work_seconds_.matching);
-    const Correction some = found(trusted(loops_.work_off(map(), map_.segments(), counts_.loops, closure_log_)));
-    all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
-  }
-}
-
-/// Once more with everything, as long as what is found helps to find more.
-void GlobalSlam::tie_loose_parts(Correction& all) {
-  WorkBudget budget(MapperTuning::kFinalSearch);
-  for (int round = 0; round < MapperTuning::kMaxRounds; ++round) {
-    std::vector<SegmentFinding> findings;
-    {
-      const WorkClock clock(work_seconds_.matching);
-      findings = segment_search_.look_for_all(map(), map_.segments(), budget);
-    }
-    bool tied = false;
-    for (const SegmentFinding& finding : findings) {
-      if (parameters_.frozen_map && finding.nodes.front().begin < session_begin_) continue;
-      const Correction some = placed(finding);
-      all.segments.insert(all.segments.end(), some.segments.begin(), some.segments.end());
-      all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
-      tied = tied || !some.closures.empty();
-    }
-    if (!tied) return;
-    solve_anew(MapperTuning::kFinalIterations);
-    work_off(all);
-    solve_anew(MapperTuning::kFinalIterations);
-  }
-}
-
 /// But counts.
 Correction GlobalSlam::nothing() const {
   Correction correction;
@@ -282,11 +233,11 @@ bool GlobalSlam::may_be_drifted() const {
 }
 
 /// Closes a loop. What that moves looks for loops again: some were too far off.
-Correction GlobalSlam::closed(const std::vector<Closure>& closures, WorkMeter& meter) {
+Correction GlobalSlam::closed(const std::vector<Closure>& closures, WorkMeter* meter) {
   if (closures.empty()) return nothing();
   const std::vector<Pose2> poses = map_.solution().poses;
   Correction correction = found(closures);
-  solve_anew(MapperTuning::kIterations, &meter);
+  solve_anew(MapperTuning::kIterations, meter);
   correction.solution = map_.solution();
   correction.counts = counts_;
   const auto is_on = [](const SwitchableEdge& edge) { return edge.is_on(); };

@@ -95,8 +95,9 @@ class GlobalSlam {
   void watch(std::uint64_t node, WorkMeter& meter);
   Correction placed(const SegmentFinding& finding);
   bool may_be_drifted() const;
-  Correction closed(const std::vector<Closure>& closures, WorkMeter& meter);
+  Correction closed(const std::vector<Closure>& closures, WorkMeter* meter);
   void work_off(Correction& all);
+  void close_far_loops(Correction& all);
   void tie_loose_parts(Correction& all);
   Correction solved();
   void solve_due(SolveSchedule::Extent extent, WorkMeter* meter);

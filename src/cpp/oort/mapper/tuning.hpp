@@ -91,6 +91,7 @@ struct MapperTuning {
   static constexpr std::size_t kDriftFarExpansions = 240000;
   static constexpr std::uint64_t kDriftSpacing = 25;     ///< [nodes at the usual spacing] from one look to the next,
   static constexpr std::uint64_t kDriftSpacingSoon = 4;  ///< and while answers wait for others
+  static constexpr std::uint64_t kDriftAtEnd = 15;  ///< such looks when mapping ends: many drives end where they began
   static constexpr double kDriftViewSpacing = 1.0;  ///< [m] between views, and between the nodes they are looked for on
   static constexpr std::uint64_t kNodesWalked = 200;  ///< at most, to collect such views
   /// Outdoors half of what is seen was not there before. That answers agree says more: of 125 stretches of 20 looks of
