@@ -63,13 +63,22 @@ class Truth:
 
     def __init__(self, session: Session, drive: Drive) -> None:
         self._session, self._true = session, true_nodes(session.map, drive)[0]
+        self._carriers, self._seen = np.arange(len(self._true)), np.zeros((len(self._true), 3))
+
+    def follow(self) -> None:
+        """Nodes are others once the map was reduced."""
+        if (renumbering := self._session.mapper.take_renumbering()) is not None:
+            carriers, T_carrier_node = renumbering
+            self._seen = compose(T_carrier_node[self._carriers], self._seen)
+            self._carriers = carriers[self._carriers]
 
     def error(self, T_sensor: Array) -> tuple[float, float]:  # noqa: N803
         apart = np.hypot(*(self._true[:, :2] - T_sensor[:2]).T) + 0.3 * np.abs(
             wrap_angle(self._true[:, 2] - T_sensor[2])
         )
         nearest = int(np.argmin(apart))
-        on_map = compose(self._session.map.node_poses[nearest], between(self._true[nearest], T_sensor))
+        T_carrier_sensor = compose(self._seen[nearest], between(self._true[nearest], T_sensor))
+        on_map = compose(self._session.map.node_poses[self._carriers[nearest]], T_carrier_sensor)
         x, y, turn = between(on_map, self._session.mapper.sensor_pose).tolist()
         return float(np.hypot(x, y)), abs(turn)
 
@@ -103,6 +112,7 @@ def kidnap(
             between(after.T_odom_base_at_scans[first], after.T_odom_base_at_scans[index]),
         )
         result = session.add_scan(_scan(after, index, time + PERIOD * (index - first), odometry))
+        truth.follow()
         if result is None or (index - first) % LOOKED_AT:
             continue
         claims.append(result.tracking == "tracking")
@@ -110,6 +120,7 @@ def kidnap(
         step = between(after.T_map_base[max(index - LOOKED_AT, first)], after.T_map_base[index])
         drives.append(bool(np.abs(step).max() > 1e-3))
     session.stop()
+    truth.follow()
     at_end = truth.error(compose(after.T_map_base[end - 1], mount))
     return _figures(np.array(claims), np.array(home), np.array(drives)) | {
         "seed": seed,
