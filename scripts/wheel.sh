@@ -21,6 +21,7 @@ rm -rf "$raw"
 if [ ! -x "$tools/bin/pip" ]; then
   if [ $# = 0 ]; then
     "$python" -m venv "$tools"
+    "$tools/bin/pip" install --quiet "pip>=23.1"  # the first with -C; Debian 12 has 23.0
   else  # Debian's ensurepip looks for pip where only its own tree has it
     "$python" -m venv --without-pip "$tools"
     PYTHONPATH=$(ls "build/wheel/$1"/usr/share/python-wheels/pip-*.whl) "$tools/bin/python" -m pip install --quiet pip
