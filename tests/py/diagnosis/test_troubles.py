@@ -138,6 +138,7 @@ def test_scans_that_are_missing() -> None:
     moving = next(k for k in range(200, len(scans)) if math.dist(scans[k].odometry, scans[k + 30].odometry) > 0.7)
     gap = troubles_of(scans[: moving + 1] + scans[moving + 30 :])["scan_gap"]
     assert gap.evidence["longest_s"] == pytest.approx(3.0)
+    assert f"the longest {scans[moving].time - scans[0].time:.1f} s after the first scan" in str(gap)
 
 
 def test_body_and_beam_order() -> None:

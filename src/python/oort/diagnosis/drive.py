@@ -26,7 +26,7 @@ def diagnose(observer: Observer, statistics: Mapping[str, Any]) -> list[Trouble]
     if not causes:  # else these are its consequences
         causes = [
             *_odometry_scale(observer, statistics["odometry_scale"]),
-            *_odometry_faults(statistics["odometry_faults"]),
+            *_odometry_faults(observer, statistics["odometry_faults"]),
         ]
     return [*causes, *_laser(statistics["laser"]), *_gaps(observer), *_uncertain(statistics["tracking"])]
 
@@ -49,7 +49,8 @@ def _odometry_scale(observer: Observer, scale: Mapping[str, float]) -> list[Trou
     ]
 
 
-def _odometry_faults(faults: Mapping[str, Any]) -> list[Trouble]:
+def _odometry_faults(observer: Observer, faults: Mapping[str, Any]) -> list[Trouble]:
+    begin = observer.stamps[0] if observer.stamps else 0.0
     found = []
     for kind, what, advice in (
         (
@@ -76,7 +77,7 @@ def _odometry_faults(faults: Mapping[str, Any]) -> list[Trouble]:
             Trouble(
                 f"odometry_{kind}",
                 f"{what}, {_times(len(those))}, at worst by {worst['distance']:.2f} m and "
-                f"{math.degrees(worst['angle']):.0f} degrees at {worst['time']:.2f} s",
+                f"{math.degrees(worst['angle']):.0f} degrees {worst['time'] - begin:.1f} s after the first scan",
                 advice,
                 {"times": len(those), "distance_m": worst["distance"], "angle_rad": worst["angle"]},
             )
@@ -130,7 +131,7 @@ def _gaps(observer: Observer) -> list[Trouble]:
         Trouble(
             "scan_gap",
             f"no scan comes for up to {steps[worst]:.1f} s while the robot drives, {_times(len(gaps))}, the longest "
-            f"from {stamps[worst]:.2f} s on",
+            f"{stamps[worst] - stamps[0]:.1f} s after the first scan",
             "check the laser's cable and driver, and that the recorder keeps up",
             {"times": len(gaps), "longest_s": float(steps[worst])},
         )
