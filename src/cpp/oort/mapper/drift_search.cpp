@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "oort/graph/relative_uncertainty.hpp"
+#include "oort/localization/place_tuning.hpp"
 #include "oort/loop_closure/tuning.hpp"
 #include "oort/maintenance/tied_segments.hpp"
 #include "oort/map/part_nodes.hpp"
@@ -112,7 +113,7 @@ DriftSearch::Doubt DriftSearch::widest(const Map& map, std::uint64_t node) {
     const FoundPlace& answer = answers_.newest();
     middle = answer.T_map_node * between(map.graph.nodes[answer.node].pose, T_map_node);
   }
-  return {{middle, MapperTuning::kDriftNear, MapperTuning::kDriftNearTheta}, MapperTuning::kSearchExpansions};
+  return {{middle, MapperTuning::kDriftNear, MapperTuning::kDriftNearTheta}, PlaceTuning::kSearchExpansions};
 }
 
 /// Whether loops with the node are searched for as far as they may be open.

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "oort/geometry/work_meter.hpp"
+#include "oort/localization/place_answers.hpp"
+#include "oort/localization/place_finder.hpp"
 #include "oort/loop_closure/closure.hpp"
 #include "oort/loop_closure/loop_closure_builder.hpp"
 #include "oort/map/map.hpp"
 #include "oort/map/trajectory_segments.hpp"
-#include "oort/mapper/place_answers.hpp"
-#include "oort/mapper/place_finder.hpp"
 #include "oort/mapper/tuning.hpp"
 #include "oort/parameters/parameters.hpp"
 

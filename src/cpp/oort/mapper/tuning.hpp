@@ -38,41 +38,11 @@ struct MapperTuning {
   static constexpr std::uint64_t kSearchGrowthParts = 5;   ///< or one part in so many of what it has by then;
   static constexpr std::uint64_t kDoubtGrowthParts = 2;    ///< of what is merely doubted, and not contradicted,
   static constexpr std::uint64_t kSearchSoon = 60;         ///< and of all that has more nodes
-  static constexpr std::size_t kNodesPerSearch = 11;       ///< that are looked for together: some 2 m of travel
 
-  // What one search may cost while mapping: about 0.1 s at most. Searches that find something in homes cost a third.
-  /// Places that score less are not looked at: answers score 0.8 and more (homes). A search that finds nothing is the
-  /// dearest, as no good place prunes it.
-  static constexpr double kLeastScore = 0.6;
-  /// By which a step of the heading moves the farthest point: half the headings, for a table that is blurred by more.
-  static constexpr double kTurnCells = 2.0;
-  /// Least share of the best score that a rival has. To 0.75, as for a robot that is looked for on a saved map, the
-  /// search of fr079 would not end; the support of what scores less differs by relocalizer.min_lead anyway.
-  static constexpr double kRivalScore = 0.85;
-  static constexpr std::size_t kSearchPoints = 250;
-  static constexpr std::size_t kSearchExpansions = 60000;
-  /// Where a place is found, it is so before; on large grounds most searches find none.
-  static constexpr std::size_t kExpansionsToFirst = 4;  ///< one part in so many
-  static constexpr std::size_t kSearchPeaks = 8;        ///< where more score as well, the place is ambiguous
-
-  // Two answers agree within this; what they say of a bent map is no better.
-  static constexpr double kSameAnswer = 0.3;        ///< [m]
-  static constexpr double kSameAnswerAngle = 0.15;  ///< [rad]
-  static constexpr double kAnswerTravel = 0.3;      ///< [m] from one answer to the next
-  static constexpr double kAgreeingAnswers = 3.0;   ///< that are believed, if they are
-  static constexpr double kAnswersApart = 1.0;      ///< [m] from the first to the last
-  // An answer of less support than one must have by itself is weak, if what does not lie on known surfaces lies where
-  // nothing is known: a robot in a corner that was not mapped.
-  static constexpr double kWeakSupport = 0.65;
-  static constexpr double kWeakContradictions = 0.1;  ///< share of the returns behind walls or on free floor, at most
-  static constexpr double kWeakWeight = 0.5;          ///< so many answers it counts as
-  // Errors of an answer that the shape of its match does not show.
-  static constexpr double kAnswerSigma = 0.05;        ///< [m]
-  static constexpr double kAnswerSigmaTheta = 0.015;  ///< [rad]
-
-  // A place that a search gave is wrong if so many looks in a row see this share of their returns behind walls or on
-  // free floor.
-  static constexpr double kContradictingShare = 0.3;
+  // Answers that agree with each other are believed:
+  static constexpr double kAgreeingAnswers = 3.0;  ///< so many,
+  static constexpr double kAnswersApart = 1.0;     ///< [m] from the first to the last
+  /// A place that a search gave is wrong if so many looks in a row contradict it.
   static constexpr int kContradictions = 3;
 
   /// Looks in a row after which odometry is believed where it was merely doubted: they confirm where it has the robot,
@@ -93,7 +63,6 @@ struct MapperTuning {
   static constexpr std::uint64_t kDriftSpacingSoon = 4;  ///< and while answers wait for others
   static constexpr std::uint64_t kDriftAtEnd = 15;  ///< such looks when mapping ends: many drives end where they began
   static constexpr double kDriftViewSpacing = 1.0;  ///< [m] between views, and between the nodes they are looked for on
-  static constexpr std::uint64_t kNodesWalked = 200;  ///< at most, to collect such views
   /// Outdoors half of what is seen was not there before. That answers agree says more: of 125 stretches of 20 looks of
   /// Killian court (whole and at 3 m), the hospital, Intel and fr079 (3 m), expected up to 20 m and 0.2 rad off, 36
   /// of the 56 that lead where the map was known were found, and none at a wrong place.
@@ -129,13 +98,6 @@ struct MapperTuning {
   /// [nodes] After so many a place that was found to be right may be doubted again; and a new local map that was begun
   /// no longer before is where the doubt begins.
   static constexpr std::uint64_t kSuspectReach = 30;
-  // An answer nearer to where the map has the robot is drift: closures mend it.
-  static constexpr double kCarried = 1.0;       ///< [m]
-  static constexpr double kCarriedAngle = 0.5;  ///< [rad]
-
-  static constexpr double kReferenceMoved = 0.1;  ///< [m] by which a node moves until the map is drawn anew,
-  /// which is done once the map has grown by one part in so many: all drawings together cost four of the final map's
-  static constexpr std::uint64_t kRedrawParts = 3;
 
   // When a map that is gone on with stays as it was (docs/lifelong.md). A day's measurements moved places of a
   // simulated home (seed 3) by up to 0.04 m.
@@ -157,14 +119,10 @@ struct MapperTuning {
   static constexpr double kLooseSigma = 15.0;  ///< [m, rad] of an edge that shall tell nothing
 
   // Work units (geometry/work_meter.hpp).
-  static constexpr double kWorkPerReferencePoint = 2.5;
-  static constexpr double kWorkPerLookup = 0.002;
-  static constexpr double kWorkPerRayStep = 0.006;
   static constexpr double kWorkPerView = 50.0;      ///< node that is looked at whether it is needed,
   static constexpr double kWorkPerReduced = 250.0;  ///< and for the rest of a reduction, beside solving
   static constexpr double kWorkPerWatched = 0.005;  ///< node of the map
   static constexpr double kWorkPerCompared = 0.06;  ///< return
-  static constexpr double kWeighedPlaces = 2.0;     ///< per search, usually
 };
 
 }  // namespace oort

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "oort/geometry/work_meter.hpp"
+#include "oort/localization/place_tuning.hpp"
 #include "oort/localization/relocalizer.hpp"
 #include "oort/loop_closure/closure.hpp"
 #include "oort/map/map.hpp"
 #include "oort/map/trajectory_segments.hpp"
-#include "oort/mapper/tuning.hpp"
 #include "oort/parameters/parameters.hpp"
 
 namespace oort {
@@ -34,8 +34,8 @@ struct Look {
 struct PlaceSearch {
   double view_spacing = 0.0;       ///< [m] between the views that are looked for together; 0: each of the nodes before
   std::optional<SearchArea> area;  ///< of the map, if it is not looked for everywhere
-  std::size_t max_expansions = MapperTuning::kSearchExpansions;
-  double least_support = MapperTuning::kWeakSupport;  ///< of an answer
+  std::size_t max_expansions = PlaceTuning::kSearchExpansions;
+  double least_support = PlaceTuning::kWeakSupport;  ///< of an answer
   /// Whether an answer of less support than a robot is found with on a saved map counts half, and not at all where
   /// something speaks against it.
   bool weighs = true;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/mapper/place_finder.hpp"
+#include "oort/localization/place_finder.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include "oort/geometry/chi_square.hpp"
 #include "oort/geometry/errors.hpp"
 #include "oort/graph/relative_uncertainty.hpp"
+#include "oort/localization/place_tuning.hpp"
 #include "oort/map/trajectory_walk.hpp"
-#include "oort/mapper/tuning.hpp"
 #include "oort/matching/frsm_adapter.hpp"
 
 namespace oort {
@@ -19,8 +19,8 @@ namespace {
 /// What a node and those before it saw, oldest first, each where the trajectory has it as seen from the node.
 std::vector<PlacedScan> views_of(const Map& map, const TrajectorySegments& segments, std::uint64_t first,
                                  std::uint64_t node, double spacing = 0.0) {
-  const std::uint64_t most = MapperTuning::kNodesPerSearch;
-  const std::uint64_t walked = spacing > 0.0 ? MapperTuning::kNodesWalked : most;
+  const std::uint64_t most = PlaceTuning::kNodesPerSearch;
+  const std::uint64_t walked = spacing > 0.0 ? PlaceTuning::kNodesWalked : most;
   std::vector<PlacedScan> views;
   for (const PlacedNode& placed :
        walk_trajectory(map, segments, node, Direction::kBackward, std::min(walked, node - first + 1))) {
@@ -43,7 +43,7 @@ double work_of_weighing(const std::vector<PlacedScan>& views, double cell) {
   for (const PlacedScan& view : views) {
     for (const frsm::Point& point : returns_of(view.cloud)) steps += std::hypot(point.x, point.y) / cell;
   }
-  return MapperTuning::kWorkPerRayStep * steps;
+  return PlaceTuning::kWorkPerRayStep * steps;
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ bool PlaceFinder::use(const Map& map, const std::vector<std::uint64_t>& nodes, b
                       double spacing) {
   if (nodes.empty()) return false;
   const bool is_older = reference_ && given_.back() <= nodes.back();
-  const bool is_like_new = is_older && map.graph.nodes.size() < drawn_at_ + given_.size() / MapperTuning::kRedrawParts;
+  const bool is_like_new = is_older && map.graph.nodes.size() < drawn_at_ + given_.size() / PlaceTuning::kRedrawParts;
   if (is_older && ((is_like_new && !anew) || (given_ == nodes && !has_moved(map)))) return true;
   draw(map, nodes, spacing, meter);
   return reference_ != nullptr;
@@ -61,7 +61,7 @@ bool PlaceFinder::use(const Map& map, const std::vector<std::uint64_t>& nodes, b
 bool PlaceFinder::has_moved(const Map& map) const {
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const Pose2 moved = between(poses_[k], map.graph.nodes[nodes_[k]].pose);
-    if (moved.translation().norm() > MapperTuning::kReferenceMoved) return true;
+    if (moved.translation().norm() > PlaceTuning::kReferenceMoved) return true;
   }
   return false;
 }
@@ -78,7 +78,7 @@ void PlaceFinder::draw(const Map& map, const std::vector<std::uint64_t>& nodes, 
     poses_.push_back(map.graph.nodes[node].pose);
     points += map.clouds[node].points.size();
   }
-  charge(meter, MapperTuning::kWorkPerReferencePoint * static_cast<double>(points));
+  charge(meter, PlaceTuning::kWorkPerReferencePoint * static_cast<double>(points));
   try {
     reference_ = std::make_shared<const ReferenceMap>(map, nodes_, parameters_);
     relocalizer_ = std::make_unique<Relocalizer>(reference_, parameters_);
@@ -100,30 +100,30 @@ Look PlaceFinder::find(const Map& map, const TrajectorySegments& segments, std::
   SearchEffort effort;
   effort.area = search.area;
   if (effort.area) effort.area->T_map_sensor = drawn(map, effort.area->T_map_sensor);
-  effort.floor = MapperTuning::kLeastScore;
-  effort.turn_cells = MapperTuning::kTurnCells;
-  effort.ratio = MapperTuning::kRivalScore;
-  effort.max_points = MapperTuning::kSearchPoints;
+  effort.floor = PlaceTuning::kLeastScore;
+  effort.turn_cells = PlaceTuning::kTurnCells;
+  effort.ratio = PlaceTuning::kRivalScore;
+  effort.max_points = PlaceTuning::kSearchPoints;
   effort.max_expansions = search.max_expansions;
-  effort.max_expansions_to_first = search.max_expansions / MapperTuning::kExpansionsToFirst;
-  effort.max_peaks = MapperTuning::kSearchPeaks;
+  effort.max_expansions_to_first = search.max_expansions / PlaceTuning::kExpansionsToFirst;
+  effort.max_peaks = PlaceTuning::kSearchPeaks;
   effort.min_support = search.least_support;
   effort.weighs_incomplete = false;
   frsm::OnLookups on_lookups;
   if (meter != nullptr) {
     on_lookups = [meter](std::uint64_t lookups) {
-      charge(meter, MapperTuning::kWorkPerLookup * static_cast<double>(lookups));
+      charge(meter, PlaceTuning::kWorkPerLookup * static_cast<double>(lookups));
     };
   }
   const std::vector<PlacedScan> views = views_of(map, segments, first, node, search.view_spacing);
-  charge(meter, MapperTuning::kWeighedPlaces * work_of_weighing(views, reference_->space().limits().resolution));
+  charge(meter, PlaceTuning::kWeighedPlaces * work_of_weighing(views, reference_->space().limits().resolution));
   const Relocalization found = relocalizer_->find(views, effort, on_lookups);
   if (!found.found()) {
     return {std::nullopt, !found.stands_out || found.rejection == Rejection::kSearchLowSupport};
   }
   const Support& support = found.best->support;
   const bool is_weak = search.weighs && support.value() < parameters_.localization.relocalizer.min_support;
-  if (is_weak && support.blocked + support.in_free > MapperTuning::kWeakContradictions * support.points) return {};
+  if (is_weak && support.blocked + support.in_free > PlaceTuning::kWeakContradictions * support.points) return {};
   const Pose2& T_drawn_node = found.best->T_map_sensor;
   const std::size_t nearest = nearest_drawn(T_drawn_node);
   const Pose2 T_map_drawn = map.graph.nodes[nodes_[nearest]].pose * inverse(poses_[nearest]);
@@ -141,8 +141,8 @@ PlaceFinder::Fit PlaceFinder::fit(const Map& map, const TrajectorySegments& segm
   for (const PlacedScan& view : views) {
     reference_->weigh(view.cloud, T_drawn_node * view.T_odom_sensor, support);
   }
-  return {support.blocked + support.in_free > MapperTuning::kContradictingShare * support.points,
-          support.value() > MapperTuning::kWeakSupport};
+  return {support.blocked + support.in_free > PlaceTuning::kContradictingShare * support.points,
+          support.value() > PlaceTuning::kWeakSupport};
 }
 
 bool PlaceFinder::may_have_drifted(const FoundPlace& answer, const Map& map) const {
@@ -156,16 +156,16 @@ bool PlaceFinder::may_have_drifted(const FoundPlace& answer, const Map& map) con
   const Pose2 known = between(T_map_node, T_map_nearest), found = between(answer.T_map_node, T_map_nearest);
   const Eigen::Vector2d moved = rotation(T_map_node.theta) * (found.translation() - known.translation());
   const double turned = wrap_angle(found.theta - known.theta);
-  if (moved.norm() < MapperTuning::kCarried && std::abs(turned) < MapperTuning::kCarriedAngle) return true;
+  if (moved.norm() < PlaceTuning::kCarried && std::abs(turned) < PlaceTuning::kCarriedAngle) return true;
   const Eigen::Vector3d difference(moved.x(), moved.y(), turned);
-  const Eigen::Vector3d floor(MapperTuning::kSameAnswer, MapperTuning::kSameAnswer, MapperTuning::kSameAnswerAngle);
+  const Eigen::Vector3d floor(PlaceTuning::kSameAnswer, PlaceTuning::kSameAnswer, PlaceTuning::kSameAnswerAngle);
   const Eigen::Matrix3d wide = 4.0 * *covariance + Eigen::Matrix3d(floor.cwiseAbs2().asDiagonal());
   return difference.dot(wide.inverse() * difference) < ChiSquare3::k99999;
 }
 
 Closure PlaceFinder::closure(const FoundPlace& place, const Map& map) const {
   const std::uint64_t nearest = nodes_[nearest_to(map, place.T_map_node)];
-  const Eigen::Vector3d sigma(MapperTuning::kAnswerSigma, MapperTuning::kAnswerSigma, MapperTuning::kAnswerSigmaTheta);
+  const Eigen::Vector3d sigma(PlaceTuning::kAnswerSigma, PlaceTuning::kAnswerSigma, PlaceTuning::kAnswerSigmaTheta);
   const Eigen::Matrix3d covariance = rotate_covariance(place.covariance, -place.T_map_node.theta);
   return {place.node, nearest, between(place.T_map_node, map.graph.nodes[nearest].pose),
           covariance + Eigen::Matrix3d(sigma.cwiseAbs2().asDiagonal()), 1.0};
@@ -199,8 +199,8 @@ std::size_t PlaceFinder::nearest_to(const Map& map, const Pose2& T_map_node) con
 
 bool agree(const FoundPlace& a, const FoundPlace& b, const Pose2& T_a_b) {
   const Pose2 apart = between(a.T_map_node * T_a_b, b.T_map_node);
-  return apart.translation().norm() <= MapperTuning::kSameAnswer &&
-         std::abs(apart.theta) <= MapperTuning::kSameAnswerAngle;
+  return apart.translation().norm() <= PlaceTuning::kSameAnswer &&
+         std::abs(apart.theta) <= PlaceTuning::kSameAnswerAngle;
 }
 
 }  // namespace oort

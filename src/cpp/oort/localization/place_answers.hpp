@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
+#include "oort/localization/place_finder.hpp"
 #include "oort/map/map.hpp"
-#include "oort/mapper/place_finder.hpp"
 
 namespace oort {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
-#include "oort/mapper/place_answers.hpp"
+#include "oort/localization/place_answers.hpp"
 
 #include <algorithm>
 
-#include "oort/mapper/tuning.hpp"
+#include "oort/localization/place_tuning.hpp"
 
 namespace oort {
 namespace {
@@ -24,13 +24,13 @@ void PlaceAnswers::add(const FoundPlace& answer, const Map& map) {
   }
   answers_.erase(std::remove_if(answers_.begin(), answers_.end(), disagrees), answers_.end());
   const bool is_new =
-      answers_.empty() || driven(map, answers_.back(), answer).translation().norm() >= MapperTuning::kAnswerTravel;
+      answers_.empty() || driven(map, answers_.back(), answer).translation().norm() >= PlaceTuning::kAnswerTravel;
   if (is_new) answers_.push_back(answer);
 }
 
 double PlaceAnswers::weight() const {
   double weight = 0.0;
-  for (const FoundPlace& answer : answers_) weight += answer.is_weak ? MapperTuning::kWeakWeight : 1.0;
+  for (const FoundPlace& answer : answers_) weight += answer.is_weak ? PlaceTuning::kWeakWeight : 1.0;
   return weight;
 }
 
