@@ -173,7 +173,7 @@ def test_file_changed(client: Client, robot: Robot, path: str) -> None:
 
         def assert_next(said: str) -> None:
             expected.append(said)
-            heard.wait(len(expected), 3.0)
+            heard.wait(len(expected))
             time.sleep(0.05)
             assert [message.data for message in heard.messages] == expected
 
