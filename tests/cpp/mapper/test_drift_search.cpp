@@ -9,6 +9,7 @@
 
 #include "mapping_fixtures.hpp"
 #include "oort/mapper/drift_search.hpp"
+#include "oort/mapper/look_queue.hpp"
 
 namespace oort {
 namespace {
@@ -77,7 +78,54 @@ TEST_F(DriftSearchTest, ALoopThatIsOpenByTenMetresIsClosed) {
 TEST_F(DriftSearchTest, ADriveThatEndsWhereItBeganIsClosedAtTheEnd) {
   looks_while_driving_ = false;
   drive(make_room(), 0.4, 0.1);
-  EXPECT_GE(search_.look_at_end(map_, segments_).size(), 3u);
+  EXPECT_GE(search_.look_at_end(map_, segments_, 0).size(), 3u);
+}
+
+TEST_F(DriftSearchTest, AtTheEndNothingIsLookedForOfTheMapBeforeTheSession) {
+  looks_while_driving_ = false;
+  drive(make_room(), 0.4, 0.1);
+  EXPECT_TRUE(search_.look_at_end(map_, segments_, map_.graph.nodes.size() - 2).empty());
+}
+
+TEST_F(DriftSearchTest, WhatASolutionMovedLooksAgain) {
+  looks_while_driving_ = false;
+  drive(make_room(), 0.4, 0.1);
+  std::vector<Pose2> before;
+  for (const Node& node : map_.graph.nodes) before.push_back(node.pose);
+  EXPECT_TRUE(nodes_to_look_again(map_, segments_, before).empty());
+  const std::uint64_t moved = before.size() - 40;
+  for (std::uint64_t node = moved; node < before.size(); ++node) before[node].x += 2.0;
+  const std::vector<std::uint64_t> nodes = nodes_to_look_again(map_, segments_, before);
+  ASSERT_FALSE(nodes.empty());
+  EXPECT_GE(nodes.front(), moved);
+}
+
+TEST(LookQueue, NewNodesComeFirstThenTheNewestThatAreToLookAgain) {
+  LookQueue queue;
+  queue.add_again(3);
+  queue.add_again(8);
+  queue.add_again(3);
+  queue.add(20);
+  queue.add(21);
+  std::vector<std::uint64_t> order;
+  while (!queue.empty()) order.push_back(queue.take().node);
+  EXPECT_EQ(order, (std::vector<std::uint64_t>{20, 21, 8, 3}));
+}
+
+TEST(LookQueue, OfAMapThatWasReducedNodesThatAreGoneLookNoMore) {
+  Renumbering nodes = Renumbering::none(4);
+  nodes.kept[1] = false;
+  nodes.carrier = {0, 0, 1, 2};
+  nodes.size = 3;
+  LookQueue queue;
+  queue.add(1);
+  queue.add(2);
+  queue.add_again(1);
+  queue.add_again(3);
+  LookQueue left = queue.renumbered(nodes);
+  EXPECT_EQ(left.take().node, 1u);
+  EXPECT_EQ(left.take().node, 2u);
+  EXPECT_TRUE(left.empty());
 }
 
 TEST_F(DriftSearchTest, AnotherRoomIsNotTakenForIt) {

@@ -148,26 +148,29 @@ PlaceFinder::Fit PlaceFinder::fit(const Map& map, const TrajectorySegments& segm
 bool PlaceFinder::may_have_drifted(const FoundPlace& answer, const Map& map) const {
   RelativeUncertainty uncertainty;
   uncertainty.update(map.graph);
-  const std::uint64_t nearest = nodes_[nearest_to(map, answer.T_map_node)];
-  const std::optional<Eigen::Matrix3d> covariance = uncertainty.from(map.graph, answer.node)[nearest];
-  if (!covariance) return true;
+  return may_have_drifted(answer, map, uncertainty.from(map.graph, answer.node)[nearest(answer, map)]);
+}
+
+bool PlaceFinder::may_have_drifted(const FoundPlace& answer, const Map& map,
+                                   const std::optional<Eigen::Matrix3d>& known) const {
+  if (!known) return true;
   const Pose2& T_map_node = map.graph.nodes[answer.node].pose;
-  const Pose2& T_map_nearest = map.graph.nodes[nearest].pose;
-  const Pose2 known = between(T_map_node, T_map_nearest), found = between(answer.T_map_node, T_map_nearest);
-  const Eigen::Vector2d moved = rotation(T_map_node.theta) * (found.translation() - known.translation());
-  const double turned = wrap_angle(found.theta - known.theta);
+  const Pose2& T_map_nearest = map.graph.nodes[nearest(answer, map)].pose;
+  const Pose2 expected = between(T_map_node, T_map_nearest), found = between(answer.T_map_node, T_map_nearest);
+  const Eigen::Vector2d moved = rotation(T_map_node.theta) * (found.translation() - expected.translation());
+  const double turned = wrap_angle(found.theta - expected.theta);
   if (moved.norm() < PlaceTuning::kCarried && std::abs(turned) < PlaceTuning::kCarriedAngle) return true;
   const Eigen::Vector3d difference(moved.x(), moved.y(), turned);
   const Eigen::Vector3d floor(PlaceTuning::kSameAnswer, PlaceTuning::kSameAnswer, PlaceTuning::kSameAnswerAngle);
-  const Eigen::Matrix3d wide = 4.0 * *covariance + Eigen::Matrix3d(floor.cwiseAbs2().asDiagonal());
+  const Eigen::Matrix3d wide = 4.0 * *known + Eigen::Matrix3d(floor.cwiseAbs2().asDiagonal());
   return difference.dot(wide.inverse() * difference) < ChiSquare3::k99999;
 }
 
 Closure PlaceFinder::closure(const FoundPlace& place, const Map& map) const {
-  const std::uint64_t nearest = nodes_[nearest_to(map, place.T_map_node)];
+  const std::uint64_t to = nearest(place, map);
   const Eigen::Vector3d sigma(PlaceTuning::kAnswerSigma, PlaceTuning::kAnswerSigma, PlaceTuning::kAnswerSigmaTheta);
   const Eigen::Matrix3d covariance = rotate_covariance(place.covariance, -place.T_map_node.theta);
-  return {place.node, nearest, between(place.T_map_node, map.graph.nodes[nearest].pose),
+  return {place.node, to, between(place.T_map_node, map.graph.nodes[to].pose),
           covariance + Eigen::Matrix3d(sigma.cwiseAbs2().asDiagonal()), 1.0};
 }
 

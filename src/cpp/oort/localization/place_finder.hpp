@@ -66,8 +66,14 @@ class PlaceFinder {
 
   /// Whether the graph knows its way to the place so badly that the answer is where the node may well be.
   bool may_have_drifted(const FoundPlace& answer, const Map& map) const;
+  /// The same with what the graph knows of that way, if anything (RelativeUncertainty).
+  bool may_have_drifted(const FoundPlace& answer, const Map& map, const std::optional<Eigen::Matrix3d>& known) const;
 
-  /// To the drawn node that is nearest to the place.
+  /// The drawn node that is nearest to the place,
+  std::uint64_t nearest(const FoundPlace& place, const Map& map) const {
+    return nodes_[nearest_to(map, place.T_map_node)];
+  }
+  /// and what leads there.
   Closure closure(const FoundPlace& place, const Map& map) const;
 
  private:

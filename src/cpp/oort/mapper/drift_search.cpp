@@ -48,14 +48,14 @@ std::vector<Closure> DriftSearch::look(const Map& map, const TrajectorySegments&
   return look_for(map.graph.nodes.size() - 1, map, segments, meter);
 }
 
-std::vector<Closure> DriftSearch::look_at_end(const Map& map, const TrajectorySegments& segments) {
+std::vector<Closure> DriftSearch::look_at_end(const Map& map, const TrajectorySegments& segments, std::uint64_t begin) {
   if (!loops_.is_adaptive()) return {};
   const std::uint64_t count = map.graph.nodes.size();
   answers_.clear();
   std::vector<Closure> closures;
   for (std::uint64_t back = MapperTuning::kDriftAtEnd; back > 0 && closures.empty(); --back) {
     const std::uint64_t before = (back - 1) * MapperTuning::kDriftSpacingSoon;
-    if (before < count) closures = look_for(count - 1 - before, map, segments, nullptr);
+    if (begin + before < count) closures = look_for(count - 1 - before, map, segments, nullptr);
   }
   return closures;
 }
@@ -87,8 +87,7 @@ std::vector<Closure> DriftSearch::look_for(std::uint64_t node, const Map& map, c
   const PlaceSearch search{MapperTuning::kDriftViewSpacing, doubt.area, doubt.max_expansions,
                            MapperTuning::kDriftSupport, false};
   const Look look = finder_.find(map, segments, end, node, meter, search);
-  const bool is_news = look.answer && !is_known(finder_.closure(*look.answer, map).to, known) &&
-                       finder_.may_have_drifted(*look.answer, map);
+  const bool is_news = look.answer && says_more(*look.answer, map, known);
   if (is_news) answers_.add(*look.answer, map);
   misses_ = is_news ? 0 : misses_ + 1;
   if (misses_ >= MapperTuning::kDriftMisses) answers_.clear();
@@ -120,6 +119,12 @@ DriftSearch::Doubt DriftSearch::widest(const Map& map, std::uint64_t node) {
 bool DriftSearch::is_known(std::uint64_t node, const Known& known) const {
   return !known[node] ||
          loops_.window_sigmas * std::sqrt(known[node]->topLeftCorner<2, 2>().trace()) <= loops_.window_xy;
+}
+
+/// Whether an answer leads where the graph may have the node without knowing it.
+bool DriftSearch::says_more(const FoundPlace& answer, const Map& map, const Known& known) const {
+  const std::uint64_t nearest = finder_.nearest(answer, map);
+  return !is_known(nearest, known) && finder_.may_have_drifted(answer, map, known[nearest]);
 }
 
 /// To where the graph leaves open where the newest node is on what was mapped long before. False if that is nowhere, or

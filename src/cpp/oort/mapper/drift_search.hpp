@@ -29,8 +29,8 @@ class DriftSearch {
   bool is_due(const TrajectorySegments& segments) const;
   /// Looks for the newest node. Returns closures once answers agree.
   std::vector<Closure> look(const Map& map, const TrajectorySegments& segments, WorkMeter* meter);
-  /// When mapping ends: looks for the last nodes, of which some were passed over.
-  std::vector<Closure> look_at_end(const Map& map, const TrajectorySegments& segments);
+  /// When mapping ends: looks for the last nodes from `begin` on, of which some were passed over.
+  std::vector<Closure> look_at_end(const Map& map, const TrajectorySegments& segments, std::uint64_t begin);
   /// Closures that it gave are contradicted: looks no more for a while.
   void refuted(const TrajectorySegments& segments);
 
@@ -46,6 +46,7 @@ class DriftSearch {
   Doubt widest(const Map& map, std::uint64_t node);
   bool narrow(Doubt& doubt, const Map& map, const std::vector<std::uint64_t>& older, const Known& known) const;
   bool is_known(std::uint64_t node, const Known& known) const;
+  bool says_more(const FoundPlace& answer, const Map& map, const Known& known) const;
   void schedule(const TrajectorySegments& segments, std::uint64_t spacing);
 
   LoopSearch loops_;

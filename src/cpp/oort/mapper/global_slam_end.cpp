@@ -38,8 +38,8 @@ void GlobalSlam::work_off(Correction& all) {
 }
 
 void GlobalSlam::close_far_loops(Correction& all) {
-  if (segment_search_.is_lost() || map_.node_count() == session_begin_) return;
-  const Correction some = closed(drift_search_.look_at_end(map(), map_.segments()), nullptr);
+  if (segment_search_.is_lost()) return;
+  const Correction some = closed(drift_search_.look_at_end(map(), map_.segments(), session_begin_), nullptr);
   if (some.closures.empty()) return;
   all.closures.insert(all.closures.end(), some.closures.begin(), some.closures.end());
   work_off(all);
