@@ -109,6 +109,46 @@ TEST(SegmentSearchTest, AtTheEndWhatNoClosureTiesIsLookedForAtAllHeadings) {
   EXPECT_TRUE(search.look_for_all(map, segments, nothing).empty()) << "it may look no more";
 }
 
+/// The closures that are found for the third lap of a room, which a doubted edge of the odometry has so far [m] off.
+std::size_t closures_of_a_robot_off_by(double metres) {
+  const World world = make_room();
+  const std::vector<Pose2> way = laps(3.0);
+  const std::size_t step = 5, lost = way.size() / step * 2 / 3;
+  Map map;
+  TrajectorySegments segments;
+  SegmentSearch search{Parameters()};
+  std::size_t found = 0;
+  for (std::uint64_t id = 0; id * step < way.size(); ++id) {
+    const Pose2& place = way[id * step];
+    PointCloud cloud = to_point_cloud(see(world, place, static_cast<double>(id), kAllRound));
+    cloud.id = id;
+    map.clouds.push_back(std::move(cloud));
+    map.graph.nodes.push_back({id, id < lost ? place : Pose2{metres, 0.0, 0.0} * place});
+    segments.add(id == 0 || id == lost, true, place);
+    if (id > 0) {
+      Edge edge;
+      edge.i = id - 1;
+      edge.j = id;
+      edge.constraint.T_i_j = between(map.graph.nodes[id - 1].pose, map.graph.nodes[id].pose);
+      const double sigma = id == lost ? 0.26 : 0.01;
+      edge.constraint.covariance = Eigen::Matrix3d::Identity() * sigma * sigma;
+      map.graph.edges.push_back(edge);
+    }
+    if (id == lost) search.begin(id, Doubt::kOdometry);
+    if (search.is_due(map.graph.nodes.size())) found += search.look(map, segments, nullptr).closures.size();
+  }
+  return found;
+}
+
+TEST(SegmentSearchTest, ARobotThatSlippedByMetresIsFound) {
+  EXPECT_GE(closures_of_a_robot_off_by(15.0), 3u);
+}
+
+/// Three answers that agree may all be wrong: on open ground one row of boxes looks like the next.
+TEST(SegmentSearchTest, NobodyCarriesARobotAHundredMetresFromOneScanToTheNext) {
+  EXPECT_EQ(closures_of_a_robot_off_by(100.0), 0u);
+}
+
 TEST(SegmentSearchTest, LooksForNothingOnAnEmptyMap) {
   SegmentSearch search{Parameters()};
   EXPECT_FALSE(search.is_due(0));

@@ -47,6 +47,13 @@ std::vector<NodeRange> ranges_of(const std::vector<std::uint64_t>& parts, std::u
   return ranges;
 }
 
+/// Whether somebody may have carried the robot from the node before `first` to the place.
+bool may_be_carried(std::uint64_t first, const FoundPlace& place, const Map& map) {
+  const double moved = (place.T_map_node.translation() - map.graph.nodes[place.node].pose.translation()).norm();
+  const double elapsed = map.clouds[first].time - map.clouds[first - 1].time;
+  return moved <= MapperTuning::kCarriedFar + MapperTuning::kCarriedSpeed * std::max(elapsed, 0.0);
+}
+
 bool are_enough(const PlaceAnswers& answers, const Map& map) {
   return answers.are_enough(map, MapperTuning::kAgreeingAnswers, MapperTuning::kAnswersApart);
 }
@@ -170,7 +177,10 @@ SegmentFinding SegmentSearch::take(const FoundPlace& answer, std::uint64_t first
   answers_.add(answer, map);
   if (!are_enough(answers_, map)) return {};
   SegmentFinding finding = placed(answers_, map);
+  const bool is_in_reach = doubt_ != Doubt::kOdometry || may_be_carried(first, answers_.newest(), map) ||
+                           finder_.may_have_drifted(answers_.newest(), map);
   answers_.clear();
+  if (!is_in_reach) return {};
   if (!finding.disproved && is_tied(map.graph, first)) {
     forget();
     return {};

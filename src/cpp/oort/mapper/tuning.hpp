@@ -73,6 +73,11 @@ struct MapperTuning {
   static constexpr double kDriftAnswersApart = 3.0;  ///< [m] from the first to the last
   static constexpr double kLookAgain = 1.0;  ///< [m] by which a loop must move a node that looks for loops again
 
+  // How far somebody may have carried a robot whose odometry is merely doubted: so far from one scan to the next, and
+  // farther while it was switched off or saw nothing.
+  static constexpr double kCarriedFar = 20.0;   ///< [m]
+  static constexpr double kCarriedSpeed = 2.0;  ///< [m/s]
+
   static constexpr std::uint64_t kMaxLooks = 16;  ///< for a segment when mapping ends
   static constexpr double kFinalSearch = 2e6;     ///< [work units] of all looks when mapping ends
   static constexpr int kMaxRounds = 8;            ///< of looking for all of them: what was found helps to find others
