@@ -16,6 +16,8 @@ namespace frsm {
 namespace {
 
 constexpr double kStepMargin = 1.1;
+constexpr double kSpacingRatio = 1.8;
+constexpr double kStraight = 0.04;  // [m] by which three points of a wall may miss a line
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 struct Link {
@@ -63,8 +65,7 @@ class Linker {
       if (facing(p, side).taken()) continue;
       if (facing(q, -side).taken()) {
         propose(p, side);
-      } else if (acceptable(length, nodes_[std::min(p, q)].left, nodes_[std::max(p, q)].right) ||
-                 is_sparse_wall(p, q)) {
+      } else if (acceptable(length, nodes_[std::min(p, q)].left, nodes_[std::max(p, q)].right) || is_one_wall(p, q)) {
         facing(p, side) = {q, length};
         facing(q, -side) = {p, length};
       }
@@ -84,7 +85,7 @@ class Linker {
       if (q >= points_.size()) break;
       if (facing(q, -side).taken()) continue;
       const double d = std::hypot(points_[p].x - points_[q].x, points_[p].y - points_[q].y);
-      if (d < best && (d < params_.max_adjacent_distance || (k == 1 && is_sparse_wall(p, q)))) {
+      if (d < best && (d < params_.max_adjacent_distance || (k == 1 && is_one_wall(p, q)))) {
         best = d;
         partner = q;
       }
@@ -94,8 +95,8 @@ class Linker {
   }
 
   // Far away, beams are farther apart than surfaces are from one another near by. Two neighbours see one surface if the
-  // line through them is not too steep for their beams.
-  bool is_sparse_wall(std::size_t p, std::size_t q) const {
+  // line through them is not too steep for their beams, or goes on straight.
+  bool is_one_wall(std::size_t p, std::size_t q) const {
     if (p + 1 != q && q + 1 != p) return false;
     const Point& a = points_[p];
     const Point& b = points_[q];
@@ -103,7 +104,26 @@ class Linker {
     if (between_beams > beam_step_) return false;
     const double range_a = std::hypot(a.x, a.y);
     const double range_b = std::hypot(b.x, b.y);
-    return std::abs(range_a - range_b) <= params_.max_beam_slope * between_beams * std::min(range_a, range_b);
+    const double slope = std::abs(range_a - range_b) / (between_beams * std::min(range_a, range_b));
+    const std::size_t first = std::min(p, q);
+    if (slope <= params_.max_beam_slope) return true;
+    if (slope > params_.max_straight_slope) return false;
+    return (first > 0 && is_straight(first - 1)) || (first + 2 < points_.size() && is_straight(first));
+  }
+
+  // Whether three neighbours lie on a line, about as far apart: a wall seen at a grazing angle.
+  bool is_straight(std::size_t first) const {
+    const Point& a = points_[first];
+    const Point& b = points_[first + 1];
+    const Point& c = points_[first + 2];
+    if (std::max(angle_between(a, b), angle_between(b, c)) > beam_step_) return false;
+    const Point ab{b.x - a.x, b.y - a.y};
+    const Point bc{c.x - b.x, c.y - b.y};
+    const double before = std::hypot(ab.x, ab.y);
+    const double after = std::hypot(bc.x, bc.y);
+    if (std::max(before, after) > kSpacingRatio * std::min(before, after)) return false;
+    const double off = std::abs(ab.x * bc.y - ab.y * bc.x) / std::max(before, after);
+    return ab.x * bc.x + ab.y * bc.y > 0.0 && off <= kStraight;
   }
 
   // A long link must continue the spacing of the links beside it: walls seen at a grazing angle do, gaps do not. At the
@@ -175,6 +195,7 @@ void ContourParams::validate() const {
   check(max_beam_step >= 0.0, "ContourParams.max_beam_step", "must not be negative");
   check(widest_beam_step >= 0.0, "ContourParams.widest_beam_step", "must not be negative");
   check(max_beam_slope >= 0.0, "ContourParams.max_beam_slope", "must not be negative");
+  check(max_straight_slope >= 0.0, "ContourParams.max_straight_slope", "must not be negative");
   check(search_range >= 1, "ContourParams.search_range", "must be at least 1");
 }
 

@@ -90,6 +90,24 @@ TEST(Contours, ACoarseLasersOwnStepLinksAFarWall) {
   EXPECT_EQ(extract_contours(coarsest, params).size(), coarsest.size());
 }
 
+TEST(Contours, AWallSeenAtAGrazingAngleIsOneChain) {
+  ContourParams params = ContourParams::urg();
+  params.widest_beam_step = 0.08;
+  ContourParams steep_only = params;
+  steep_only.max_straight_slope = params.max_beam_slope;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    const test::Sensor coarse{181, 1.5 * test::kPi, 20.0, 0.015};  // 1.5 degrees: up to 2.6 m apart
+    const Points wall = test::scan({{{-30.0, -4.0}, {30.0, -4.0}}}, {}, coarse, random);
+    EXPECT_LE(extract_contours(wall, params).size(), 3U);
+    EXPECT_GT(extract_contours(wall, steep_only).size(), 10U);
+    // A row of pillars is none, though they stand as evenly as beams hit walls.
+    test::Scene pillars;
+    for (int k = 0; k < 12; ++k) test::add_box(&pillars, {2.0 + 1.5 * k, -4.0, 0.0}, 0.2, 0.2);
+    EXPECT_GE(extract_contours(test::scan(pillars, {}, coarse, random), params).size(), 8U);
+  }
+}
+
 TEST(Contours, EmptyAndSinglePoint) {
   EXPECT_TRUE(extract_contours({}, ContourParams::sick()).empty());
   const auto contours = extract_contours({{1.0, 1.0}}, ContourParams::sick());

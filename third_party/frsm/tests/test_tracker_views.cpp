@@ -89,6 +89,27 @@ TEST(Tracker, WhatIsNewToAScanFarAwayDoesNotTurnIt) {
   EXPECT_LT(std::abs(turned), 0.001);  // [rad]; 0.0013 with all points
 }
 
+// Far along a wall the returns of coarse beams lie metres apart. Drawn as dots they fit each other best where the
+// sensor has not moved.
+TEST(Tracker, GoesOnInAHallThatCoarseBeamsSee) {
+  test::Scene hall;
+  test::add_box(&hall, {30.0, 18.0, 0.0}, 64.0, 44.0);
+  for (int row = 0; row < 6; ++row) {
+    for (int k = 0; k < 3; ++k) test::add_box(&hall, {10.0 + 19.0 * k, 3.0 + 6.0 * row, 0.0}, 15.0, 1.2);
+  }
+  TrackerParams params;
+  params.contours = ContourParams::urg();
+  params.contours.widest_beam_step = 0.08;
+  Tracker tracker(params);
+  std::mt19937 random(1);
+  const Motion step{{0.14, 0.0, 0.0}, Eigen::Vector3d(2.5e-3, 2.5e-3, 1e-3).asDiagonal()};
+  for (int i = 0; i < 40; ++i) {
+    tracker.track(test::scan(hall, {0.14 * i, 0.0, 0.0}, {181, 1.5 * kPi, 20.0, 0.015}, random), 0.2 * i,
+                  i > 0 ? step : Motion{});
+  }
+  EXPECT_LT(distance(tracker.pose(), {0.14 * 39, 0.0, 0.0}), 0.1);
+}
+
 // Half a coarse sensor's view, with stretches that see one wall only: far better than the odometry, which is 0.6 rad
 // off.
 TEST(Tracker, FollowsANarrowShortView) {

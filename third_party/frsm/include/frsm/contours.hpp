@@ -20,6 +20,7 @@ struct ContourParams {
   double max_beam_step = 0.0;               ///< [rad] neighbours whose beams are nearer may be linked at any distance
   double widest_beam_step = 0.0;            ///< [rad] or than the scan's own step, if that is at most this
   double max_beam_slope = 1.0;              ///< if their ranges differ by at most this share of their beams' distance
+  double max_straight_slope = 6.0;          ///< the same where they go on straight: a wall at a grazing angle
   int search_range = 4;                     ///< how many indices away a partner may be
 
   /// Long-range sensor with fine steps on a slow robot (Hokuyo UTM-like).
