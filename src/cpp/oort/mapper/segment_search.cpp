@@ -177,8 +177,7 @@ SegmentFinding SegmentSearch::take(const FoundPlace& answer, std::uint64_t first
   answers_.add(answer, map);
   if (!are_enough(answers_, map)) return {};
   SegmentFinding finding = placed(answers_, map);
-  const bool is_in_reach = doubt_ != Doubt::kOdometry || may_be_carried(first, answers_.newest(), map) ||
-                           finder_.may_have_drifted(answers_.newest(), map);
+  const bool is_in_reach = doubt_ != Doubt::kOdometry || may_be_carried(first, answers_.newest(), map);
   answers_.clear();
   if (!is_in_reach) return {};
   if (!finding.disproved && is_tied(map.graph, first)) {
