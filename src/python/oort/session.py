@@ -254,6 +254,7 @@ class Session:
             raise StateError(f"{resume}: mapping is not paused; call {start} first")
         if self._state is State.PAUSED:
             self._mapper.resume_from_paused()
+            self._observer.pause()
             self._state = State.MAPPING
 
     def stop(self) -> None:

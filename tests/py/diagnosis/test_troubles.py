@@ -133,6 +133,23 @@ def test_odometry_that_jumps() -> None:
     assert jump.evidence["distance_m"] == pytest.approx(3.0, abs=0.1)
 
 
+def test_a_pause_is_no_gap() -> None:
+    scans = scans_of(DRIVE)
+    moving = next(k for k in range(200, len(scans)) if math.dist(scans[k].odometry, scans[k + 30].odometry) > 0.7)
+    session = Session(Parameters(), MOUNT)
+    session.start()
+    for scan in scans[: moving + 1]:
+        session.add_scan(scan)
+        session.observe(scan)
+    session.pause()
+    session.resume_from_paused()
+    for scan in scans[moving + 30 :]:
+        session.add_scan(scan)
+        session.observe(scan)
+    session.stop()
+    assert "scan_gap" not in {trouble.code for trouble in session.troubles()}
+
+
 def test_scans_that_are_missing() -> None:
     scans = scans_of(DRIVE)
     moving = next(k for k in range(200, len(scans)) if math.dist(scans[k].odometry, scans[k + 30].odometry) > 0.7)

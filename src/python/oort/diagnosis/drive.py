@@ -121,7 +121,8 @@ def _gaps(observer: Observer) -> list[Trouble]:
     if len(stamps) < _FEW:
         return []
     steps, moved = np.diff(stamps), np.diff(poses, axis=0)
-    long = steps > max(_GAP, _GAP_FACTOR * float(np.median(steps)))
+    wanted = ~np.isin(stamps[1:], list(observer.after_pauses))
+    long = wanted & (steps > max(_GAP, _GAP_FACTOR * float(np.median(steps))))
     far = (np.hypot(moved[:, 0], moved[:, 1]) > _GAP_TRAVEL) | (np.abs(moved[:, 2]) > _GAP_TURN)
     gaps = np.flatnonzero(long & far)
     if not len(gaps):

@@ -53,10 +53,16 @@ class Observer:
         """of all scans [s]"""
         self.odometry: list[Pose] = []
         """T_odom_base at all scans"""
+        self.after_pauses: set[float] = set()
+        """stamps of scans before which none was wanted [s]"""
+        self._paused = False
 
     def add(self, scan: Scan) -> None:
         """Takes the next scan."""
         before, self._before = self._before, scan
+        if self._paused:
+            self.after_pauses.add(scan.time)
+            self._paused, before = False, None
         self.stamps.append(scan.time)
         self.odometry.append(scan.odometry)
         self._since += 1
@@ -67,6 +73,10 @@ class Observer:
         if len(self.stamps) > _KEPT:
             del self.stamps[: _KEPT // 2], self.odometry[: _KEPT // 2]
             self.samples = [sample for sample in self.samples if sample.begin >= self.stamps[0]]
+
+    def pause(self) -> None:
+        """Mapping is paused before the next scan: that none came since the last one is no fault."""
+        self._paused = True
 
     def _is_due(self, before: Scan, scan: Scan) -> bool:
         if not 0.0 < scan.time - before.time <= _LONGEST:
