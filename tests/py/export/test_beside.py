@@ -23,7 +23,7 @@ def _paused(parameters: Parameters, seeds: tuple[int, int], scans: int = 250) ->
     session.start()
     for number, drive in enumerate(drives):
         for index in range(scans):
-            time = 1000.0 * number + 0.1 * index
+            time = 1.6e9 + 1000.0 * number + 0.1 * index
             session.add_scan(
                 Scan(
                     time=time, stamp=f"{time:.6f}", angle_min=drive.angle_min, angle_increment=drive.angle_increment,
@@ -47,6 +47,7 @@ def test_a_part_that_is_not_tied_is_told_of_and_shown_apart() -> None:
     assert [trouble.code for trouble in session.troubles()].count("loose_part") == 1
     (trouble,) = loose_parts(map_)
     assert "1 part of the drive" in str(trouble) and "could not be tied" in str(trouble)
+    assert "from 0.0 s to 24.5 s after the first scan" in str(trouble)
     assert trouble.evidence["nodes"] == len(parts[0])
     grid = render_map(map_, parameters)[0]
     beside = set_beside(map_, grid, parameters)

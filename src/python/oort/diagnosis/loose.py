@@ -17,14 +17,15 @@ def loose_parts(map_: Map) -> list[Trouble]:
         return []
     poses, times = map_.node_poses, map_.cloud_times
     metres = sum(float(np.hypot(*np.diff(poses[nodes, :2], axis=0).T).sum()) for nodes in parts)
-    first, last = min(times[nodes].min() for nodes in parts), max(times[nodes].max() for nodes in parts)
+    # Of the map, whose first node a session that goes on with it may not have seen.
+    first, last = (float(end([end(times[nodes]) for nodes in parts]) - times[0]) for end in (np.min, np.max))
     where = "it lies is not known, and it is" if len(parts) == 1 else "they lie is not known, and they are"
     what = "1 part" if len(parts) == 1 else f"{len(parts)} parts"
     return [
         Trouble(
             "loose_part",
-            f"{what} of the drive, {metres:.1f} m from {first:.2f} s to {last:.2f} s, could not be tied to the rest of "
-            f"the map: where {where} left out of it (the map.png of a replay shows it beside)",
+            f"{what} of the drive, {metres:.1f} m from {first:.1f} s to {last:.1f} s after the first scan, could "
+            f"not be tied to the rest of the map: where {where} left out of it (a replay's map.png shows it beside)",
             "drive on through places that were mapped before, or tell at the dock that the robot stands there",
             {"parts": len(parts), "nodes": sum(len(nodes) for nodes in parts), "metres": metres},
         )
