@@ -65,6 +65,8 @@ def _name_other(path: str) -> str:
             )
         if ending in _MAPS_OF_OTHERS:
             return f"{candidate} is {_MAPS_OF_OTHERS[ending]}, not an Oort map"
+    if os.path.isfile(path) and not any(os.path.lexists(normalise_map_path(path) + ending) for ending in _OTHERS):
+        return f"{path} is a file of another kind"
     return ""
 
 

@@ -152,7 +152,9 @@ def test_map_to_go_on_with_that_is_not_there(capsys: pytest.CaptureFixture[str],
 
 
 def test_until_before_the_first_scan(capsys: pytest.CaptureFixture[str], tmp_path: Path, log: Path) -> None:
-    assert "no scan" in refuse(capsys, tmp_path, log, "--until", "-1")
+    with pytest.raises(SystemExit):
+        refuse(capsys, tmp_path, log, "--until", "-1")
+    assert "--until: -1: choose a number of seconds from 0" in capsys.readouterr().err
 
 
 def test_map_path_that_cannot_be_written(capsys: pytest.CaptureFixture[str], tmp_path: Path, log: Path) -> None:

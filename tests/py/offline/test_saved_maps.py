@@ -87,6 +87,15 @@ def test_maps_of_other_programs_and_pointers_are_named(tmp_path: Path) -> None:
         open_map(str(tmp_path / "b"))
 
 
+def test_a_file_of_another_kind_is_not_said_to_lack_its_checksum(saved: Path, tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("hello")
+    with pytest.raises(MapFileError, match=r"notes\.txt is a file of another kind; an Oort map is given by"):
+        open_map(str(tmp_path / "notes.txt"))
+    Path(f"{saved}.map_capnp").unlink()  # of a map
+    with pytest.raises(MapFileError, match="room"):
+        open_map(f"{saved}.map_meta_capnp")
+
+
 def test_a_map_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(MapFileError, match="does not exist"):
         open_map(str(tmp_path / "none"))

@@ -164,7 +164,7 @@ def test_a_viewer_of_the_original_is_missed(tmp_path: Path) -> None:
         ('{"output_mpa": {}}', 'my.json:1: unknown parameter "output_mpa"; the nearest known is "output_map"'),
         ('{"dock_submap_size": 9}', '"dock_graph_builder.dock_submap_size"'),
         ('{"output_map": {\n\n"median": {"itr": 1}}}', 'my.json:3: unknown parameter "output_map.median.itr"'),
-        ('{"output_map.robot_radius": 0.2}', "unknown"),
+        ('{"output_map.robot_radius": 0.2}', 'is written {"output_map": {"robot_radius": ...}}'),
         (
             '{\n\n"linear_update": "far"}',
             'my.json:3: linear_update: "far" is of the wrong type (string)',
@@ -241,6 +241,18 @@ def test_only_values_can_be_set() -> None:
     for bad in (None, [1], {}, object()):
         with pytest.raises(TypeError):
             parameters.set(f"{MATCHER}.stationary_motion_model", bad)  # type: ignore[arg-type]
+
+
+def test_a_path_as_a_key_is_told_how_it_is_written(tmp_path: Path) -> None:
+    file = tmp_path / "params.json"
+    file.write_text('{"output_map.median.iter": 2}')
+    with pytest.raises(
+        ParameterError,
+        match=r'params.json:1: "output_map.median.iter" is written {"output_map": {"median": {"iter": ...}}}$',
+    ):
+        read_parameters(file)
+    file.write_text('{"output_map": {"median": {"iter": 2}}}')
+    assert read_parameters(file).get("output_map.median.iter") == 2
 
 
 def test_a_whole_number_may_have_a_decimal_point(tmp_path: Path) -> None:

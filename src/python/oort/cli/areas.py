@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 
 from oort.areas import FEWEST, Area, areas_of_map, make_area
-from oort.cli.tool import add_checksum_argument, add_json_argument, parse_arguments, print_result, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, parse_arguments, print_result, run_tool
 from oort.errors import InputError
 from oort.parameters import read_parameters
 from oort.saved_maps import open_map
@@ -14,7 +14,7 @@ from oort.session import Session
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort areas",
         description="Lists, adds and removes areas and lines of a saved map where the robot shall not go; they move "
         "with the map. Example: oort areas maps/home --add no_go_area carpet --points 1 1 2.5 1 2.5 2 1 2",

@@ -3,20 +3,22 @@
 """``oort batch RECORDING...``: maps many recordings in parallel, into one table and one page."""
 
 import argparse
+import time
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from oort.cli.tool import add_json_argument, add_worker_arguments, print_result, run_tool
+from oort.cli.tool import Parser, add_json_argument, add_worker_arguments, print_result, run_tool
 from oort.errors import InputError
 from oort.export.files import write_atomically
 from oort.offline.batch import Outcome, make_jobs, run_batch, write_table
+from oort.offline.progress import time_left
 from oort.parameters import read_parameters
 from oort.report.index_page import make_index_page
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort batch",
         description="Maps many recordings, each in a process of its own, and writes a table (batch.json) and a page "
         "(index.html) of them all. Interrupted, it goes on where it was when called again; a recording or parameters "
@@ -32,9 +34,9 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _tell(outcome: Outcome, done: int, total: int) -> None:
+def _tell(outcome: Outcome, done: int, total: int, left: str) -> None:
     what = outcome.error or ("was done before" if outcome.kept else f"{outcome.figures['nodes']} nodes")
-    print(f"[{done}/{total}] {Path(outcome.folder).name}: {what}", flush=True)
+    print(f"[{done}/{total}] {Path(outcome.folder).name}: {what}{left}", flush=True)
 
 
 def _run(args: argparse.Namespace) -> None:
@@ -44,10 +46,12 @@ def _run(args: argparse.Namespace) -> None:
     jobs = make_jobs(args.recordings, out, Path(args.params).read_text() if args.params else None)
     out.mkdir(parents=True, exist_ok=True)
     outcomes: list[Outcome] = []
+    started = time.monotonic()
     for outcome in run_batch(jobs, args.jobs, args.cluster):
         outcomes.append(outcome)
         if not args.json:
-            _tell(outcome, len(outcomes), len(jobs))
+            kept = sum(each.kept for each in outcomes)  # these took no time
+            _tell(outcome, len(outcomes), len(jobs), time_left(started, len(outcomes) - kept, len(jobs) - kept))
     write_table(outcomes, out)
     rows = [{"name": Path(o.folder).name, **asdict(o)} for o in sorted(outcomes, key=lambda o: o.recording)]
     write_atomically(out / "index.html", make_index_page(rows))

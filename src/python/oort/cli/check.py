@@ -6,13 +6,21 @@ import argparse
 from collections.abc import Sequence
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import UNCERTAIN, add_json_argument, parse_arguments, print_result, run_tool
+from oort.cli.tool import (
+    UNCERTAIN,
+    Parser,
+    add_json_argument,
+    add_until_argument,
+    parse_arguments,
+    print_result,
+    run_tool,
+)
 from oort.offline.replay import ReplayOptions, replay
 from oort.parameters import read_parameters
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort check",
         epilog="Example: oort check drive.bag --json",
         description="Maps a recorded drive, keeps nothing, and says what is wrong with the recording or the setup.",
@@ -20,7 +28,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("input", nargs="+", help="the recording, as for oort replay")
     parser.add_argument("--params", metavar="FILE", help="parameters (default: the packaged params.json)")
     add_recording_arguments(parser)
-    parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
+    add_until_argument(parser)
     parser.add_argument(
         "--strict", action="store_true", help=f"exit with {UNCERTAIN} if where the robot was is mostly uncertain"
     )

@@ -5,12 +5,12 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_json_argument, print_result, run_tool
 from oort.offline.compare import compare
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort compare",
         description="Lays two replays side by side and over each other: maps, figures, parameters that differ, and how "
         "far apart they have the robot. Example: oort compare oort-out/before oort-out/after",

@@ -6,14 +6,14 @@ import argparse
 import importlib
 from collections.abc import Mapping, Sequence
 
-from oort.cli.tool import add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_json_argument, print_result, run_tool
 from oort.errors import OortError
 
 _SHELLS = ("bash", "zsh", "tcsh")
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort completion",
         description="Prints a script for a shell, which then completes the tools and their options. "
         'Example: eval "$(oort completion bash)"',

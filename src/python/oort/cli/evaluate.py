@@ -9,7 +9,7 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.evaluation.ground_truth import RelationLimits, autogenerate_relations, write_relations
 from oort.evaluation.trajectories import AteResult, RelationsResult, evaluate_ate, evaluate_relations
 from oort.export import read_tum
@@ -35,7 +35,7 @@ def _format(result: RelationsResult | AteResult) -> str:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort evaluate",
         epilog="Example: oort evaluate ate trajectory.tum truth.tum",
         description="Compares trajectories with the truth.",

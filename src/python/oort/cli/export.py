@@ -5,7 +5,7 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.offline.export import FORMATS, export
 from oort.parameters import read_parameters
 from oort.saved_maps import open_map
@@ -13,7 +13,7 @@ from oort.saved_maps import open_map
 
 def _parser() -> argparse.ArgumentParser:
     formats = "\n".join(f"  {name:<11} {what}" for name, what in FORMATS.items())
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort export",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Writes a saved map in the format of another program. Example: oort export maps/home dxf home.dxf",

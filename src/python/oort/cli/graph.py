@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from oort.cli.tool import add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_json_argument, print_result, run_tool
 from oort.evaluation.graph import (
     METHODS,
     Solution,
@@ -69,7 +69,7 @@ def _format(figures: dict[str, Any]) -> str:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort graph",
         epilog="Example: oort graph solve graph.g2o solved.g2o",
         description="Solves pose graphs in the format of g2o or TORO.",

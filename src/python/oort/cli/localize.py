@@ -9,6 +9,7 @@ from pathlib import Path
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
 from oort.cli.tool import (
+    Parser,
     add_checksum_argument,
     add_json_argument,
     add_pose_argument,
@@ -26,7 +27,7 @@ from oort.recording import Pose
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort localize",
         description="Follows a recorded drive on a saved map, without changing the map. "
         "Example: oort localize maps/home drive.bag",
@@ -53,8 +54,9 @@ def _run(args: argparse.Namespace) -> None:
         start = tuple(args.pose)
     elif args.start != "global":
         start = start_pose(map_, parameters, args.start)
-    drive = follow(recording, scans_with_progress(recording, args.quiet or args.json), map_, parameters, start)
     folder = Path(args.out) if args.out else Path("oort-out") / f"{recording.name}-localized"
+    folder.mkdir(parents=True, exist_ok=True)  # what hinders that is told now rather than after the drive
+    drive = follow(recording, scans_with_progress(recording, args.quiet or args.json), map_, parameters, start)
     report = write_localization(drive, map_, args.map, parameters, folder)
     if args.quiet and not args.json:
         return

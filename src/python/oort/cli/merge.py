@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Sequence
 
 from oort.cli.tool import (
+    Parser,
     add_checksum_argument,
     add_json_argument,
     add_pose_argument,
@@ -18,7 +19,7 @@ from oort.parameters import read_parameters
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort merge",
         epilog="Example: oort merge maps/up maps/down maps/home",
         description="Joins two saved maps of the same home into one, in the frame of the first. Neither is changed. "

@@ -5,12 +5,12 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.offline.migrate import migrate
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort migrate",
         epilog="Example: oort migrate maps/old maps/new",
         description="Writes a saved map of any format that this Oort reads in the newest one.",

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from oort._core import ParameterEntry, parameter_table
-from oort.cli.tool import add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_json_argument, print_result, run_tool
 from oort.parameters.writer import documentation, write
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="oort parameters", epilog="Example: oort parameters table", description=__doc__
-    )
+    parser = Parser(prog="oort parameters", epilog="Example: oort parameters table", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     table = commands.add_parser("table", help="print the table as Markdown")
     writing = commands.add_parser("write", help="write params/*.json and docs/parameters.md")

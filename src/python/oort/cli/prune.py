@@ -5,20 +5,13 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, number, print_result, run_tool
 from oort.offline.prune import prune
 from oort.parameters import read_parameters
 
 
-def _views(text: str) -> int:
-    views = int(text)
-    if views < 1:
-        raise argparse.ArgumentTypeError(f"{text}: choose at least 1")
-    return views
-
-
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort prune",
         epilog="Example: oort prune maps/home maps/pruned",
         description="Writes a saved map that grew over many sessions with only the views that it needs. Places, docks "
@@ -28,7 +21,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("target", metavar="OUT", help="where the new one goes")
     parser.add_argument(
         "--views",
-        type=_views,
+        type=number,
         metavar="N",
         help="of a piece of surface from one side (default: keep_views of params.json)",
     )

@@ -5,13 +5,13 @@
 import argparse
 from collections.abc import Sequence
 
-from oort.cli.tool import add_checksum_argument, add_json_argument, print_steps, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, print_steps, run_tool
 from oort.offline.render import render
 from oort.parameters import read_parameters
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort render",
         epilog="Example: oort render maps/home pictures/home",
         description="Draws a saved map: PREFIX_map.png, and PREFIX_map_cleaned.png without speckle noise, each with "

@@ -13,9 +13,11 @@ from oort._core import Parameters, normalise_map_path
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
 from oort.cli.tool import (
     UNCERTAIN,
+    Parser,
     add_checksum_argument,
     add_json_argument,
     add_pose_argument,
+    add_until_argument,
     parse_arguments,
     run_tool,
 )
@@ -51,7 +53,7 @@ def replay_to_folder(
     wrong with the recording or the setup. Raises OortError, also where the map to go on with would be overwritten.
     """
     folder = Path(out) if out else Path("oort-out") / recording.name
-    map_path = base or str(folder.absolute() / "map")
+    map_path = base or str(folder / "map")
     if options.resume and normalise_map_path(options.resume[0]) == normalise_map_path(map_path):
         raise InputError(
             f"{options.resume[0]}: resuming would overwrite this map; choose another place with --map or --out, or "
@@ -96,7 +98,7 @@ def check_name(base: str) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort replay",
         description="Maps a recorded drive: a ROS 1 bag, a ROS 2 bag or MCAP, or a CARMEN log (.clf, also .gz, .bz2). "
         "Example: oort replay drive.bag --out oort-out/drive",
@@ -117,7 +119,7 @@ def _parser() -> argparse.ArgumentParser:
         "--truth", metavar="FILE", help="true poses of the base (TUM): the reports say how far it is off"
     )
     parser.add_argument("--relations", metavar="FILE", help="true relative poses, as for oort evaluate relations")
-    parser.add_argument("--until", type=float, metavar="SECONDS", help="stop this long after the first stamp")
+    add_until_argument(parser)
     parser.add_argument(
         "--closures", action="store_true", help="also write closures.csv and .png: each attempt to close a loop"
     )

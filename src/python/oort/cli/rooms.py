@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 from typing import Any
 
-from oort.cli.tool import add_checksum_argument, add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, print_result, run_tool
 from oort.errors import InputError
 from oort.export.named_rooms import ROOMS, NamedRoom
 from oort.offline.export import rooms_of
@@ -16,7 +16,7 @@ from oort.session import Session
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort rooms",
         description="Lists the rooms of a saved map with their areas, the largest first, and names them. A name is "
         "kept in the map as a place of the namespace rooms. Example: oort rooms maps/home --name 2 kitchen",

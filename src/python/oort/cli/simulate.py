@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from oort.cli.tool import add_json_argument, add_pose_argument, parse_arguments, print_result, run_tool
+from oort.cli.tool import Parser, add_json_argument, add_pose_argument, parse_arguments, print_result, run_tool
 from oort.errors import InputError
 from oort.simulate.drive import FAULTS, SCENES, Drive, SimulationConfig, simulate_drive
 from oort.simulate.plan_files import read_plan
@@ -87,7 +87,7 @@ def _run(args: argparse.Namespace) -> None:
 
 def _parser() -> argparse.ArgumentParser:
     presets = "\n".join(f"  {name:<11}{what}" for name, what in MEANINGS.items())
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort simulate",
         description="Simulates a robot's drive through a home, made up or given: scans, odometry and the truth.",
         epilog=f"sensors:\n{presets}\n\n{_EXAMPLES}",

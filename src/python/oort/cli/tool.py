@@ -10,8 +10,9 @@ import os
 import re
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Generator, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from oort.errors import OortError
 from oort.export.files import decimal
@@ -30,6 +31,15 @@ _PLAIN = re.compile(r"-\d+|-\d*\.\d+")
 """The negative numbers that argparse does not take for options."""
 
 
+_ADVICE: dict[type[OSError], str] = {
+    FileExistsError: "; it is no folder, so choose another path",
+    NotADirectoryError: "; choose another path",
+    FileNotFoundError: "; check the path",
+    PermissionError: "; check who may read and write there",
+}
+"""what to do about an error of the operating system"""
+
+
 def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int:
     """Runs a tool; the exit status is what it returns, 0 for None, 2 for an error, 130 for Ctrl-C, 1 for a fault of
     Oort's own; none of them is told with a traceback.
@@ -39,6 +49,7 @@ def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # of names that the terminal cannot show
+    usual, warnings.formatwarning = warnings.formatwarning, _note
     try:
         take_interrupts()
         status = run()
@@ -47,7 +58,8 @@ def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 128 + signal.SIGPIPE
     except (OortError, OSError, MemoryError) as error:
-        print(f"{name}: {_told(error, reading)}", file=sys.stderr)
+        # Errors begin with the method that was called, which may be what the tool is called.
+        print(f"{name}: {_told(error, reading).removeprefix(f'{name.split()[-1]}: ')}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print(f"{name}: interrupted", file=sys.stderr)
@@ -60,14 +72,45 @@ def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int
             f"{name}: this is a fault of Oort's ({why}); please report it, with what {_DEBUG}=1 shows", file=sys.stderr
         )
         return FAULT
+    finally:
+        warnings.formatwarning = usual
     return status or 0
+
+
+def _note(message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None) -> str:
+    """A warning as people read it: without the line of source that it came from."""
+    return f"note: {message}\n"
 
 
 def _told(error: Exception, reading: str) -> str:
     if isinstance(error, MemoryError):
         return f"{reading}: it takes more memory than there is"
-    text = f"{error.filename or reading}: {error.strerror}" if isinstance(error, OSError) else str(error)
+    text = str(error)
+    if isinstance(error, OSError):
+        advice = next((told for kind, told in _ADVICE.items() if isinstance(error, kind)), "")
+        text = f"{error.filename or reading}: {error.strerror}{advice}"
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST // 2]} [...] {text[-_LONGEST // 2 :]}"
+
+
+class Parser(argparse.ArgumentParser):
+    """Tells what is wrong with a call in one line, as every other error is told; --help has the rest."""
+
+    def error(self, message: str) -> NoReturn:
+        """Ends the program."""
+        self.exit(2, f"{self.prog}: {message}; {self.prog} --help tells how it is called\n")
+
+
+def add_until_argument(parser: argparse.ArgumentParser) -> None:
+    """The option that ends a drive early."""
+    parser.add_argument("--until", type=seconds, metavar="SECONDS", help="stop this long after the first stamp")
+
+
+def seconds(text: str) -> float:
+    """A length of time of a command line. Raises ValueError, ArgumentTypeError."""
+    value = float(text)
+    if not 0.0 <= value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text}: choose a number of seconds from 0")
+    return value
 
 
 Arguments = argparse.ArgumentParser | argparse._ArgumentGroup
@@ -121,9 +164,17 @@ def add_checksum_argument(parser: argparse.ArgumentParser) -> None:
 def add_worker_arguments(parser: argparse.ArgumentParser) -> None:
     """Where the tools for many recordings do their work."""
     parser.add_argument(
-        "--jobs", metavar="N", type=int, default=os.cpu_count() or 1, help="so many at a time (default: cores)"
+        "--jobs", metavar="N", type=number, default=os.cpu_count() or 1, help="so many at a time (default: cores)"
     )
     parser.add_argument("--cluster", metavar="ADDRESS", help="a Dask cluster instead, such as tcp://scheduler:8786")
+
+
+def number(text: str) -> int:
+    """A number of things of a command line, 1 or more. Raises ValueError, ArgumentTypeError."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text}: choose at least 1")
+    return value
 
 
 def parse_arguments(parser: argparse.ArgumentParser, argv: Sequence[str] | None) -> argparse.Namespace:

@@ -4,15 +4,17 @@
 
 import argparse
 import json
+import time
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from oort._core import Parameters
-from oort.cli.tool import add_json_argument, add_worker_arguments, print_steps, run_tool
+from oort.cli.tool import Parser, add_json_argument, add_worker_arguments, number, print_steps, run_tool
 from oort.errors import InputError
 from oort.export.files import write_atomically
+from oort.offline.progress import time_left
 from oort.offline.scoring import Score
 from oort.offline.search_space import parse_axis
 from oort.offline.tune import Search, Task, Tried
@@ -24,7 +26,7 @@ _UNITS = {"truth": "m off the truth", "relations": "m of the relations", "agreem
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort tune",
         description="Searches values of some parameters with which a set of recordings maps better: nearer to the "
         "truth beside a recording (NAME.truth.tum), to its relations (NAME.relations), or with fewer contradictions of "
@@ -47,7 +49,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--out", metavar="DIR", default="oort-tune", help="where all goes (default: oort-tune)")
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="of the search's random numbers")
-    parser.add_argument("--at-once", metavar="N", type=int, default=1, help="trials in a round (default: 1)")
+    parser.add_argument("--at-once", metavar="N", type=number, default=1, help="trials in a round (default: 1)")
     add_worker_arguments(parser)
     add_json_argument(parser)
     return parser
@@ -59,17 +61,19 @@ def _search(args: argparse.Namespace) -> Generator[str, None, dict[str, Any]]:
         raise InputError(f"--trials {args.trials}: a search takes one trial or more")
     start = read_parameters(args.params)
     axes = tuple(parse_axis(text, start) for text in args.search)
-    task = Task(tuple(args.recordings), start, axes, args.seed, max(1, args.at_once))
+    task = Task(tuple(args.recordings), start, axes, args.seed, args.at_once)
     out = Path(args.out)
     with open_pool(args.jobs, args.cluster) as pool:
         search = Search(task, out, pool)
         if all(score.kind == "failed" for score in search.start_scores.values()):
             yield "no recording can be mapped with the parameters to start from"
         tried: list[Tried] = []
+        started = time.monotonic()
         for one in search.run(args.trials):
             tried.append(one)
             best = min(tried, key=lambda t: t.error)
-            yield f"[{len(tried)}/{args.trials}] error {one.error:.3f} of the start's, best {best.error:.3f}"
+            left = time_left(started, len(tried), args.trials)
+            yield f"[{len(tried)}/{args.trials}] error {one.error:.3f} of the start's, best {best.error:.3f}{left}"
         best = min(tried, key=lambda t: t.error)
         if best.error >= 1.0:
             raise InputError(

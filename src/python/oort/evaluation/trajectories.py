@@ -104,7 +104,7 @@ def compare_relations(
     trajectory: Trajectory, path: str | os.PathLike[str], *, max_seconds: float | None = None
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Which poses of the trajectory (n, 2) each relation is of, -1 for none, and relation_errors()."""
-    relations = _read_relations(Path(path))
+    relations = read_relations(Path(path))
     if max_seconds is not None:
         relations = relations[np.abs(relations[:, 1] - relations[:, 0]) < max_seconds]
     if not len(relations):
@@ -118,7 +118,7 @@ def compare_relations(
     return ends, errors
 
 
-def _read_relations(path: Path) -> NDArray[np.float64]:
+def read_relations(path: Path) -> NDArray[np.float64]:
     """(n, 8) rows as in the file."""
     rows = [values for _, _, values in read_rows(path, "t1 t2 x y z roll pitch yaw")]
     return np.array(rows, dtype=np.float64).reshape(-1, 8)

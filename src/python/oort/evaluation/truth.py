@@ -3,6 +3,7 @@
 """What is known to be true of a drive, and how far a replay is off it."""
 
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from oort.evaluation.trajectories import (
     compare_relations,
     evaluate_ate,
     evaluate_relations,
+    read_relations,
 )
 from oort.export.tum import Trajectory, read_tum
 
@@ -29,9 +31,11 @@ class Truth:
         return self.poses is not None or self.relations is not None
 
     def check(self) -> None:
-        """Reads the poses, before a drive is mapped for them. Raises InputError."""
+        """Reads the files, before a drive is mapped for them. Raises InputError."""
         if self.poses is not None:
             read_tum(self.poses)
+        if self.relations is not None:
+            read_relations(Path(self.relations))
 
     def judge(self, trajectory: Trajectory) -> "Judgement":
         """How far a trajectory is off. Raises InputError for files that cannot be read or are of another drive."""

@@ -11,6 +11,13 @@ from tqdm import tqdm
 from oort.recording import Recording, Scan
 
 
+def time_left(started: float, done: int, total: int) -> str:
+    """``, 12 s left``, by what was done since ``started`` (time.monotonic()); empty once all is done or nothing is."""
+    if not 0 < done < total:
+        return ""
+    return f", {(time.monotonic() - started) / done * (total - done):.0f} s left"
+
+
 def scans_with_progress(recording: Recording, quiet: bool) -> Iterator[Scan]:
     """The scans of a recording, with signs of life on standard error unless quiet."""
     return with_progress(recording.scans(), recording, quiet)
@@ -28,6 +35,5 @@ def with_progress(scans: Iterator[Scan], recording: Recording, quiet: bool) -> I
         for number, scan in enumerate(scans, start=1):
             yield scan
             if number % step == 0:
-                left = (time.monotonic() - started) / number * max(0, recording.num_scans - number)
-                told = f"{recording.name}: {number} of {recording.num_scans} scans, {left:.0f} s left"
-                print(told, file=sys.stderr)
+                left = time_left(started, number, recording.num_scans)
+                print(f"{recording.name}: {number} of {recording.num_scans} scans{left}", file=sys.stderr)

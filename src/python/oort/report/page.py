@@ -40,7 +40,8 @@ def read_page_data(path: Path) -> dict[str, Any]:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} cannot be read: {error}; name a report.html, or the folder of a replay") from None
+        why = error.strerror if isinstance(error, OSError) else "it is no text"
+        raise InputError(f"{path} cannot be read: {why}; name a report.html, or the folder of a replay") from None
     start = text.find(_DATA)
     try:
         data = json.loads(text[start + len(_DATA) : text.index(_END, start)]) if start >= 0 else None

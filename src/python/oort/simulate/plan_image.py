@@ -54,11 +54,11 @@ def _read(path: Path, resolution: float | None) -> GridMap:
         if resolution is not None:
             raise InputError(f"{path} says itself how large its pixels are; leave out --resolution")
         return read_map_server(path)
+    check_regular(path)
     if resolution is None:
         raise InputError(f"{path}: how many metres is a pixel? Say so with --resolution, for example 0.05")
     if not RESOLUTIONS[0] <= resolution <= RESOLUTIONS[1]:
         raise InputError(f"--resolution {resolution:g}: choose {RESOLUTIONS[0]:g} to {RESOLUTIONS[1]:g} m for a pixel")
-    check_regular(path)
     try:
         with Image.open(path) as picture:
             if picture.width * picture.height > MOST_PIXELS:
