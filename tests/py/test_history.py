@@ -62,10 +62,14 @@ def test_a_version_of_no_time_that_can_be() -> None:
     assert "at no time that can be" in describe(Version(1, "home.previous", 1e300))
 
 
-def test_without_a_map_there_is_nothing_to_keep(tmp_path: Path) -> None:
+def test_without_a_map_there_is_nothing_to_keep(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(MapFileError):
         keep_version(str(tmp_path / "none"))
     assert versions(str(tmp_path / "none")) == []
     with pytest.raises(InputError):
         restore(str(tmp_path / "none"), 1)
-    assert main(["history", str(tmp_path / "none")]) == 0
+    assert main(["history", str(tmp_path / "none")]) == 2
+    assert "none: there is no map" in capsys.readouterr().err
+    save_numbered(str(tmp_path / "home"), 1)
+    assert main(["history", str(tmp_path / "home")]) == 0
+    assert "no earlier versions" in capsys.readouterr().out

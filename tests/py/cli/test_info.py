@@ -13,6 +13,7 @@ from oort import load_map
 from oort.cli import completion, info
 from oort.cli.main import TOOLS, main
 from oort.simulate import Drive
+from oort.simulate.bag import write_ros2_bag
 from oort.simulate.writers import write_carmen
 
 
@@ -25,7 +26,8 @@ def test_a_saved_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert 10.0 < told["free_area"] < 20.5
     assert told["bytes"] == sum(file.stat().st_size for file in tmp_path.iterdir())
     assert info.main([path]) == 0
-    assert "free area" in capsys.readouterr().out
+    told_in_words = capsys.readouterr().out
+    assert "free area" in told_in_words and " m²\n" in told_in_words
 
 
 def test_a_recording(drive: Drive, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -41,6 +43,23 @@ def test_a_recording(drive: Drive, tmp_path: Path, capsys: pytest.CaptureFixture
     assert told["driven_by_odometry"] == pytest.approx(drive.length, rel=0.1)
     assert info.main([str(tmp_path / "home.clf")]) == 0
     assert "odometry            there" in capsys.readouterr().out
+
+
+def test_a_folder_is_a_recording(drive: Drive, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_ros2_bag(drive, tmp_path / "home")
+    for name in ("home", "home/"):
+        assert info.main([f"{tmp_path}/{name}", "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["kind"] == "ROS 2 bag"
+
+
+def test_a_word_that_is_no_tool(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["replya"]) == 2
+    told = capsys.readouterr().err
+    assert told == "oort: there is no tool 'replya'; perhaps replay is meant; oort --help lists them\n"
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("oort 0.")
+    assert main([]) == 2
+    assert "usage: oort TOOL" in capsys.readouterr().err
 
 
 def test_neither(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

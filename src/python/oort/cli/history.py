@@ -6,12 +6,14 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from oort.cli.tool import add_json_argument, print_result, run_tool
+from oort.cli.tool import Parser, add_json_argument, print_result, run_tool
+from oort.errors import InputError
 from oort.history import describe, restore, versions
+from oort.offline.info import is_saved_map
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort history",
         epilog="Example: oort history maps/home --restore 1",
         description="Lists the earlier versions of a saved map: what it was before each of the last sessions that were "
@@ -26,6 +28,8 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(arguments: argparse.Namespace) -> None:
+    if not is_saved_map(arguments.map) and not versions(arguments.map):
+        raise InputError(f"{arguments.map}: there is no map, nor an earlier version of one; check the path")
     if arguments.restore is not None:
         restore(arguments.map, arguments.restore)
         told = f"{arguments.map}: is version {arguments.restore} again; what it was is version 1 now"

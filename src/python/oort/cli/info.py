@@ -6,13 +6,13 @@ import argparse
 from collections.abc import Sequence
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import add_checksum_argument, add_json_argument, parse_arguments, print_result, run_tool
+from oort.cli.tool import Parser, add_checksum_argument, add_json_argument, parse_arguments, print_result, run_tool
 from oort.offline.info import format_info, is_saved_map, map_info, recording_info
 from oort.parameters import read_parameters
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort info",
         description="Says what a saved map holds (size, nodes, closures, places, areas, earlier versions) or what a "
         "recording is (scans, rate, laser, odometry). Example: oort info maps/home --json",

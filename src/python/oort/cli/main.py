@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command ``oort``: one word for each tool."""
 
+import difflib
 import importlib
 import sys
 from collections.abc import Sequence
+
+from oort._core import __version__
 
 TOOLS = {
     "replay": "map a recorded drive",
@@ -31,14 +34,30 @@ TOOLS = {
 }
 """what each is for"""
 
+_USAGE = "\n".join(
+    [
+        "usage: oort TOOL ...",
+        *(f"  {name:<11}{what}" for name, what in TOOLS.items()),
+        "oort TOOL --help tells the options of one, with an example; oort --version the version",
+    ]
+)
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs one tool; exit code 2 for a wrong call."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if not arguments or arguments[0] not in TOOLS:
-        stream = sys.stdout if arguments[:1] in (["-h"], ["--help"]) else sys.stderr
-        print("usage: oort TOOL ...", *(f"  {name:<11}{what}" for name, what in TOOLS.items()), sep="\n", file=stream)
-        return 0 if stream is sys.stdout else 2
+    word = arguments[0] if arguments else ""
+    if word in ("-h", "--help"):
+        print(_USAGE)
+        return 0
+    if word == "--version":
+        print(f"oort {__version__}")
+        return 0
+    if word not in TOOLS:
+        near = difflib.get_close_matches(word, TOOLS, 1)
+        meant = f"; perhaps {near[0]} is meant" if near else ""
+        print(f"oort: there is no tool {word!r}{meant}; oort --help lists them" if word else _USAGE, file=sys.stderr)
+        return 2
     module = importlib.import_module(f"oort.cli.{arguments[0]}")
     result: int = module.main(arguments[1:])
     return result

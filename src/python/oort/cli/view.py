@@ -13,9 +13,10 @@ from pathlib import Path
 
 from oort._core import Parameters, normalise_map_path
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
-from oort.cli.tool import FAULT, add_json_argument, parse_arguments, print_result, run_tool
+from oort.cli.tool import FAULT, Parser, add_json_argument, parse_arguments, print_result, run_tool
 from oort.errors import InputError, OortError
 from oort.live import Listener, LiveSession
+from oort.offline.info import is_saved_map
 from oort.parameters import read_parameters
 from oort.recording import Recording
 from oort.view import PORT, Viewer
@@ -36,7 +37,7 @@ class _Teller(Listener):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="oort view",
         description="Shows a recording as it is mapped, or a saved map, on a page for the browser: the map as it "
         f"grows, the robot, the queue, how long things take. Ends with Ctrl-C or SIGTERM. {_EXAMPLE}",
@@ -67,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _recording(args: argparse.Namespace, parameters: Parameters) -> Recording | None:
     """The recording that is named, or None for a saved map."""
-    if len(args.input) == 1 and Path(f"{normalise_map_path(args.input[0])}.map_capnp").is_file():
+    if len(args.input) == 1 and is_saved_map(args.input[0]):
         return None
     recording = recording_of(args, parameters)
     if recording.without_odometry:

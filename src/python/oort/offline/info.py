@@ -18,9 +18,20 @@ from oort.saved_maps import open_map
 _FILES = (".map_capnp", ".map_meta_capnp", ".md5")
 
 
+_UNITS = {
+    "seconds": "s",
+    "size": "m",
+    "free_area": "m²",
+    "range_max": "m",
+    "sensor_on_base": "(m, m, rad)",
+    "driven_by_odometry": "m",
+}
+"""of what format_info() tells"""
+
+
 def is_saved_map(path: str) -> bool:
-    """Whether a path, with or without an ending, leads to an Oort map."""
-    return Path(f"{normalise_map_path(path)}{_FILES[0]}").is_file()
+    """Whether a path, with or without an ending, leads to an Oort map; a folder is a ROS 2 bag, if anything."""
+    return not Path(path).is_dir() and Path(f"{normalise_map_path(path)}{_FILES[0]}").is_file()
 
 
 def map_info(path: str, parameters: Parameters, *, ignore_checksum: bool = False) -> dict[str, Any]:
@@ -82,7 +93,11 @@ def recording_info(recording: Recording) -> dict[str, Any]:
 def format_info(info: dict[str, Any]) -> str:
     """As aligned lines for people."""
     width = max(map(len, info))
-    return "\n".join(f"{name.replace('_', ' '):<{width}}  {_text(value)}" for name, value in info.items())
+    lines = []
+    for name, value in info.items():
+        unit = _UNITS.get(name) if value not in (None, []) else None
+        lines.append(f"{name.replace('_', ' '):<{width}}  {_text(value)}{f' {unit}' if unit else ''}")
+    return "\n".join(lines)
 
 
 def _text(value: Any) -> str:
