@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from oort.areas import make_area
 from oort.errors import InputError
 from oort.export import write_closures_picture, write_picture
 
@@ -43,7 +44,7 @@ def test_what_is_drawn_lies_where_it_belongs(tmp_path: Path) -> None:
         tmp_path / "map.png",
         trajectory=[[-0.5, 0.0, 1.0], [0.5, 0.0, 2.0]],
         accepted=[[[-0.5, 0.2], [0.5, 0.2]]],
-        rejected=[[[-0.5, -0.2], [0.5, -0.2]]],
+        undone=[[[-0.5, -0.2], [0.5, -0.2]]],
         locations=[("dock/dock", (0.0, 0.3, 0.0))],
     )
     red, green, blue = (tuple(int(v) for v in image[pixel(0.0, y)]) for y in (-0.2, 0.2, 0.0))
@@ -53,6 +54,20 @@ def test_what_is_drawn_lies_where_it_belongs(tmp_path: Path) -> None:
     assert tuple(image[pixel(0.0, 0.3)]) == (200, 90, 0)
     row, column = pixel(0.0, 0.3)
     assert image[row - 25 : row, column + 5 : column + 90].min() < 60  # the name, dark, right above
+
+
+def test_areas_are_outlines_and_lines(tmp_path: Path) -> None:
+    square = make_area("no_go_area", "carpet", [(-0.6, -0.2), (-0.2, -0.2), (-0.2, 0.2), (-0.6, 0.2)])
+    line = make_area("no_go_line", "stairs", [(0.2, 0.0), (0.6, 0.0), (0.6, 0.2)])
+    image = picture(tmp_path / "map.png", areas=[square, line])
+    for x, y, drawn in ((-0.6, 0.0, True), (-0.4, 0.0, False), (0.4, 0.0, True), (0.4, 0.1, False)):
+        assert (tuple(image[pixel(x, y)]) == (190, 40, 160)) == drawn, (x, y)
+
+
+def test_a_narrow_map_has_nothing_known_beside_it(tmp_path: Path) -> None:
+    write_picture(tmp_path / "map.png", np.zeros((40, 10), dtype=np.int8), 0.05, ORIGIN)
+    with Image.open(tmp_path / "map.png") as seen:
+        assert seen.getpixel((seen.width - 1, 0)) == (205, 205, 205)
 
 
 def test_same_input_same_bytes(tmp_path: Path) -> None:

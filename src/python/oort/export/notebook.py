@@ -7,6 +7,7 @@ import base64
 import numpy as np
 
 from oort._core import SWITCH_ON, Map, Parameters, render_map
+from oort.areas import areas_of_map, is_area
 from oort.export.picture import draw_picture
 
 
@@ -18,15 +19,16 @@ def map_png(map_: Map) -> bytes | None:
     edges, poses = map_.switchable_edges, map_.node_poses
     ends = np.stack([poses[edges["i"], :2], poses[edges["j"], :2]], axis=1)
     on = edges["switch"] >= SWITCH_ON
-    places = ((f"{space}/{id}", map_.locate(space, id)) for space, id, *_ in map_.locations)
+    places = ((f"{space}/{id}", map_.locate(space, id)) for space, id, *_ in map_.locations if not is_area(space))
     return draw_picture(
         grid.cells,
         grid.resolution,
         (*grid.origin, 0.0),
         trajectory=poses,
         accepted=ends[on],
-        rejected=ends[~on],
+        undone=ends[~on],
         locations=[(name, pose) for name, pose in places if pose is not None],
+        areas=areas_of_map(map_),
     )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from oort.areas import Area
 from oort.export.files import write_atomically
 from oort.export.map_server import grey_picture
 from oort.recording.types import Pose
@@ -22,8 +23,8 @@ _FONT_SIZE = 15
 _ROW = 24  # [px] height of each further row of the legend
 _ENTRIES_IN_A_ROW = 3  # at least, of the narrowest picture
 _WAY, _START = (40, 90, 200), (20, 130, 220)
-_ACCEPTED, _REJECTED = (0, 150, 60), (220, 40, 40)
-_VERDICTS = {"contradicted": _REJECTED, "accepted": _ACCEPTED}
+_ACCEPTED, _UNDONE = (0, 150, 60), (220, 40, 40)
+_VERDICTS = {"contradicted": _UNDONE, "accepted": _ACCEPTED}
 _REFUSED = (  # told apart from one another and from the two above
     (150, 150, 230),
     (230, 160, 60),
@@ -38,6 +39,7 @@ _REFUSED = (  # told apart from one another and from the two above
     (60, 140, 140),
     (190, 190, 190),
 )
+_UNKNOWN, _NO_GO = (205, 205, 205), (190, 40, 160)
 _PLACE, _INK, _PAPER = (200, 90, 0), (30, 30, 30), (255, 255, 255)
 
 
@@ -49,8 +51,9 @@ def write_picture(
     *,
     trajectory: ArrayLike = (),
     accepted: ArrayLike = (),
-    rejected: ArrayLike = (),
+    undone: ArrayLike = (),
     locations: Sequence[tuple[str, Pose]] = (),
+    areas: Sequence[Area] = (),
     captions: Sequence[tuple[str, tuple[float, float]]] = (),
 ) -> None:
     """Writes a PNG, see draw_picture. Raises OortError too, if the file cannot be written."""
@@ -60,8 +63,9 @@ def write_picture(
         origin,
         trajectory=trajectory,
         accepted=accepted,
-        rejected=rejected,
+        undone=undone,
         locations=locations,
+        areas=areas,
         captions=captions,
     )
     write_atomically(Path(path), png)
@@ -74,20 +78,22 @@ def draw_picture(
     *,
     trajectory: ArrayLike = (),
     accepted: ArrayLike = (),
-    rejected: ArrayLike = (),
+    undone: ArrayLike = (),
     locations: Sequence[tuple[str, Pose]] = (),
+    areas: Sequence[Area] = (),
     captions: Sequence[tuple[str, tuple[float, float]]] = (),
 ) -> bytes:
     """Draws a PNG; the same arguments give the same bytes.
 
     `cells` (height, width), `resolution` [m] and `origin` are as in GridMap. `trajectory` is (n, 2 or more) with x, y
-    [m] first, and a row of NaN where it is interrupted; `accepted` and `rejected` are the ends of loop closures,
-    (k, 2, 2) x, y [m]; `locations` are names with their poses; `captions` are texts and where they begin. All are in
-    the map's frame. Raises InputError for an unusable grid.
+    [m] first, and a row of NaN where it is interrupted; `accepted` and `undone` are the ends of the loop closures that
+    the solution keeps and of those that it switched off, (k, 2, 2) x, y [m]; `locations` are names with their poses,
+    `areas` where the robot shall not go; `captions` are texts and where they begin. All are in the map's frame. Raises
+    InputError for an unusable grid.
     """
     grid, scale = _scaled(grey_picture(cells))
     canvas = _Canvas(grid, resolution / scale, origin)
-    for ends, colour in ((rejected, _REJECTED), (accepted, _ACCEPTED)):
+    for ends, colour in ((undone, _UNDONE), (accepted, _ACCEPTED)):
         for line in np.asarray(ends, dtype=np.float64).reshape(-1, 2, 2):
             canvas.line(line, colour, 2)
     way = np.asarray(trajectory, dtype=np.float64)
@@ -97,6 +103,8 @@ def draw_picture(
             canvas.line(piece, _WAY, 2)
         if pieces:
             canvas.dot(pieces[0][0], _START, 5)
+    for area in areas:
+        canvas.area(area)
     for name, pose in locations:
         canvas.place(name, pose)
     for text, corner in captions:
@@ -104,9 +112,11 @@ def draw_picture(
     canvas.legend(
         [
             ("trajectory", _WAY, way.size),
-            ("accepted closures", _ACCEPTED, np.asarray(accepted).size),
-            ("rejected closures", _REJECTED, np.asarray(rejected).size),
-            ("locations", _PLACE, len(locations)),
+            ("start", _START, way.size),
+            ("closures accepted", _ACCEPTED, np.asarray(accepted).size),
+            ("closures undone", _UNDONE, np.asarray(undone).size),
+            ("places", _PLACE, len(locations)),
+            ("no-go areas", _NO_GO, len(areas)),
         ]
     )
     return _png(canvas)
@@ -181,6 +191,7 @@ class _Canvas:
         self._font = ImageFont.load_default(_FONT_SIZE)
         rows = legend_entries // _ENTRIES_IN_A_ROW
         self.image = Image.new("RGB", (max(width, _LONG_SIDE // 2), height + _STRIP + rows * _ROW), _PAPER)
+        self.image.paste(_UNKNOWN, (0, 0, self.image.width, height))  # a narrow map has nothing known beside it
         self.image.paste(Image.fromarray(grid).convert("RGB"), (0, 0))
         self._draw = ImageDraw.Draw(self.image)
 
@@ -208,6 +219,12 @@ class _Canvas:
         self.dot(centre, _PLACE, 5)
         ((x, y),) = self._pixels(centre.reshape(1, 2))
         self._draw.text((x + 8, y - 20), name, fill=_INK, font=self._font, stroke_width=3, stroke_fill=_PAPER)
+
+    def area(self, area: Area) -> None:
+        """Its outline, or its line, and its name at the first corner."""
+        corners = np.array([*area.points, area.points[0]] if area.kind == "no_go_area" else area.points)
+        self.line(corners, _NO_GO, 3)
+        self.text(area.name, area.points[0])
 
     def text(self, text: str, corner: tuple[float, float]) -> None:
         """Its lower left corner is there."""

@@ -18,6 +18,7 @@ from oort._core import (
     prune_map,
     save_map,
 )
+from oort.areas import areas_of_map, is_area
 from oort.errors import InputError
 from oort.export import write_picture
 from oort.offline.drawing import draw_map
@@ -114,7 +115,11 @@ def _draw(path: str, merged: Merged, map_: Map, grid: OccupancyGrid) -> bool:
     across = (edges["i"] < merged.first_node_b) != (edges["j"] < merged.first_node_b)
     ends = np.stack([poses[edges["i"], :2], poses[edges["j"], :2]], axis=1)
     on = edges["switch"] >= SWITCH_ON
-    places = [(f"{space}/{id}", compose(poses[node], pose).tolist()) for space, id, node, pose in map_.locations]
+    places = [
+        (f"{space}/{id}", compose(poses[node], pose).tolist())
+        for space, id, node, pose in map_.locations
+        if not is_area(space)
+    ]
     write_picture(
         path,
         grid.cells,
@@ -122,7 +127,8 @@ def _draw(path: str, merged: Merged, map_: Map, grid: OccupancyGrid) -> bool:
         (*grid.origin, 0.0),
         trajectory=poses[merged.first_node_b :],
         accepted=ends[across & on],
-        rejected=ends[across & ~on],
+        undone=ends[across & ~on],
         locations=[(name, (x, y, theta)) for name, (x, y, theta) in places],
+        areas=areas_of_map(map_),
     )
     return True

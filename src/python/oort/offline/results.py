@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from oort._core import SWITCH_ON, Map, Mapper, OccupancyGrid, Parameters, save_map
+from oort.areas import areas_of_map, is_area
 from oort.diagnosis import Trouble
 from oort.evaluation.attempts import judge_attempts, write_attempts
 from oort.evaluation.histograms import make_histograms, panels
@@ -142,8 +143,9 @@ def _write_pictures(
             origin,
             trajectory=_way(drive, base_poses, beside),
             accepted=closures[on & drawn],
-            rejected=closures[~on & drawn],
+            undone=closures[~on & drawn],
             locations=[(f"{space}/{id}", drive.session.locations.locate(space, id)) for space, id in _names(drive)],
+            areas=areas_of_map(map_),
             captions=beside.captions,
         ),
     )
@@ -207,7 +209,7 @@ def _write_page(
 
 
 def _names(drive: Drive) -> list[tuple[str, str]]:
-    return [(space, id) for space, id, *_ in drive.session.mapper.locations]
+    return [(space, id) for space, id, *_ in drive.session.mapper.locations if not is_area(space)]
 
 
 def _closure_ends(map_: Map, beside: Beside) -> NDArray[np.float64]:
