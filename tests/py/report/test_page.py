@@ -60,7 +60,7 @@ def test_the_report_opens_from_disk_and_shows_the_run(page: Page, run: Path) -> 
     assert page.locator("#name").inner_text() == "home"
     assert str(report["nodes"]) in page.locator("#figures").inner_text()
     assert page.locator("#map img.grid").count() == 1
-    assert page.locator("#charts canvas").count() == 2
+    assert page.locator("#charts canvas").count() == 3
     assert (run / "report.html").stat().st_size < 10e6
 
 
@@ -144,6 +144,61 @@ def test_a_click_on_the_trajectory_sets_the_time(page: Page, run: Path) -> None:
     assert abs(poses[shown, :2] - poses[third, :2]).max() < 0.3
 
 
+def test_a_click_beside_a_closure_shows_its_scans(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    page.get_by_label("closures accepted").check()
+    page.get_by_label("trajectory by tracking state").uncheck()
+    page.get_by_label("undone").uncheck()
+    ends = unpack(read_page_data(run / "report.html")["closures"]["ends"]).reshape(-1, 2)
+    poses = unpack(read_page_data(run / "report.html")["nodes"]["poses"])
+    lengths = np.hypot(*(poses[ends[:, 0], :2] - poses[ends[:, 1], :2]).T)
+    kept = unpack(read_page_data(run / "report.html")["closures"]["verdict"]) == 0
+    longest = poses[ends[np.argmax(np.where(kept, lengths, 0.0))], 1::-1]
+    script = "ends => ends.map(at => { const p = view.map.latLngToContainerPoint(at); return [p.x, p.y]; })"
+    a, b = np.array(page.evaluate(script, longest.tolist()))
+    along = (b - a) / np.hypot(*(b - a))
+    box = page.locator("#map").bounding_box()
+    assert box is not None
+    x, y = (a + b) / 2 + 3.0 * np.array([-along[1], along[0]])
+    page.mouse.click(box["x"] + x, box["y"] + y)
+    assert "Inlier ratio" in page.locator("#details").inner_text()
+    assert page.locator("#overlay").is_visible()
+
+
+def test_what_odometry_is_learned_to_be_is_on_the_timeline(page: Page, run: Path, tmp_path: Path) -> None:
+    data = read_page_data(run / "report.html")
+    told = json.loads((run / "report.json").read_text())["odometry_scale"]
+    for name, key in (("way_scale", "translation"), ("turn_scale", "rotation")):
+        assert unpack(data["samples"][name])[-1] == pytest.approx(told[key], abs=0.01)
+        del data["samples"][name]  # as in runs of earlier versions
+    _open(page, run / "report.html")
+    assert "where odometry says 1" in page.locator("#charts").inner_text()
+    (tmp_path / "report.html").write_bytes(make_report_page("home", data))
+    _open(page, tmp_path / "report.html")
+    assert "where odometry says 1" not in page.locator("#charts").inner_text()
+
+
+def test_the_first_scan_has_nothing_to_be_matched_with(run: Path) -> None:
+    ratios = unpack(read_page_data(run / "report.html")["samples"]["inlier_ratio"])
+    assert np.isnan(ratios[0]) and ratios[1] > 0.5
+
+
+def test_paper_shows_what_the_window_shows(page: Page, run: Path) -> None:
+    _open(page, run / "report.html")
+    before = page.locator("#map").bounding_box()
+    assert before is not None
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    width = page.evaluate("Math.max(...Array.from(document.querySelectorAll('canvas'), c => c.clientWidth))")
+    assert width <= 1500
+    paper = page.locator("#map").bounding_box()
+    assert paper is not None and paper["width"] == pytest.approx(660, abs=1)
+    assert paper["height"] / paper["width"] == pytest.approx(before["height"] / before["width"], rel=0.01)
+    page.emulate_media(media="screen")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert page.locator("#map").bounding_box() == before
+
+
 @pytest.fixture(scope="module")
 def judged(drive: Drive, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a replay of the same minute that knows the truth, and one relation."""
@@ -170,7 +225,7 @@ def test_the_truth_is_on_the_timeline_and_on_the_map(page: Page, judged: Path) -
     poses = unpack(read_page_data(judged / "report.html")["samples"]["pose"])
     np.testing.assert_allclose(np.hypot(*(true - poses[:, :2]).T), off, atol=1e-5)
     _open(page, judged / "report.html")
-    assert page.locator("#charts canvas").count() == 4
+    assert page.locator("#charts canvas").count() == 5
     assert "off the truth" in page.locator("#figures").inner_text()
     page.locator("#time").focus()
     page.locator("#time").press("End")

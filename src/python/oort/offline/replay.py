@@ -90,7 +90,9 @@ def replay(
         if mapped is not None:
             result = _map_timed(session, mapped, watch)
             recorder.follow(session.mapper.take_renumbering())
-            log.add(scan.time, result, watch.scan_seconds[-1], watch.waited_seconds[-1])
+            scale = session.mapper.statistics["odometry_scale"]
+            learned = scale["translation"], scale["rotation"]
+            log.add(scan.time, result, watch.scan_seconds[-1], watch.waited_seconds[-1], learned)
             session.observe(mapped)
         else:
             log.add(scan.time, None)

@@ -203,7 +203,7 @@ def _write_page(
     judgement: Judgement | None,
 ) -> None:
     attempts = judge_attempts(drive.session.mapper.closure_attempts, map_)
-    way = Way(drive.log, base_poses, drive.recorder.carriers())
+    way = Way(drive.log, base_poses, drive.recorder.carriers(), bool(drive.parameters.get("use_odometry")))
     data = run_page_data(report, drive.parameters, map_, grid, beside, attempts, way, judgement)
     write_atomically(path, make_report_page(f"Oort: {drive.recording.name}", data))
 

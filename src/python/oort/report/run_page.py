@@ -44,6 +44,7 @@ class Way:
     """T_map_base, (n, 3)"""
     carriers: NDArray[np.int64]
     """(n,) the node that it is carried by, -1 of none"""
+    uses_odometry: bool = True
 
 
 def run_page_data(
@@ -106,4 +107,5 @@ def _samples(way: Way) -> dict[str, Any]:
         "node": pack(way.carriers[rows], "i4"),
         "state": pack(columns["state"], "u1"),
         **{name: pack(columns[name], "f4") for name in ("inlier_ratio", "local_ms", "waited_ms")},
+        **({name: pack(columns[name], "f4") for name in ("way_scale", "turn_scale")} if way.uses_odometry else {}),
     }

@@ -24,19 +24,35 @@ class ScanLog:
     states: list[int] = field(default_factory=list)
     """codes of TRACKING_STATES"""
     inlier_ratios: list[float] = field(default_factory=list)
-    """nan for a scan that was not matched"""
+    """nan for a scan that was not matched, or of which nothing lies on the local map"""
     seconds: list[float] = field(default_factory=list)
     """that local SLAM took; nan for a scan that was not mapped"""
     waited: list[float] = field(default_factory=list)
     """[s] that the scan waited for global SLAM; nan for a scan that was not mapped"""
 
-    def add(self, time: float, result: ScanResult | None, seconds: float = np.nan, waited: float = np.nan) -> None:
+    way_scales: list[float] = field(default_factory=list)
+    """how far the base drives where odometry says 1, as learned; nan for a scan that was not mapped"""
+    turn_scales: list[float] = field(default_factory=list)
+    """likewise how far it turns"""
+
+    def add(
+        self,
+        time: float,
+        result: ScanResult | None,
+        seconds: float = np.nan,
+        waited: float = np.nan,
+        scale: tuple[float, float] = (np.nan, np.nan),
+    ) -> None:
         """Adds the next scan with what the mapper made of it (None: it was not mapping)."""
         self.times.append(time)
         self.states.append(_NOT_MAPPED if result is None else TRACKING_STATES.index(result.tracking))
-        self.inlier_ratios.append(result.inlier_ratio if result is not None and result.was_tracked else np.nan)
+        # The first scan of a segment is tracked, too, on a local map on which nothing is.
+        matched = result is not None and result.was_tracked and result.inlier_ratio > 0.0
+        self.inlier_ratios.append(result.inlier_ratio if result is not None and matched else np.nan)
         self.seconds.append(seconds)
         self.waited.append(waited)
+        self.way_scales.append(scale[0])
+        self.turn_scales.append(scale[1])
 
     @property
     def matched_inlier_ratios(self) -> NDArray[np.float64]:
@@ -62,5 +78,7 @@ def thinned(log: ScanLog, most: int) -> tuple[NDArray[np.int64], dict[str, NDArr
     ):
         array = np.array(values, dtype=np.float64) * (1e3 if name.endswith("_ms") else 1.0)
         columns[name] = worst.reduceat(array, starts) if count else array
+    for name, values in (("way_scale", log.way_scales), ("turn_scale", log.turn_scales)):
+        columns[name] = np.array(values, dtype=np.float64)[starts] if count else np.zeros(0)
     columns["time"] = np.array(log.times, dtype=np.float64)[starts] if count else np.zeros(0)
     return starts, columns

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 "use strict";
 
+const PAPER = 660; // [px] A4 without its margins
 const RUN_COLOURS = ["#0b6bcb", "#d6336c"];
 
 // One map per run, or the second's walls and trajectory on the first's.
@@ -79,7 +80,7 @@ function showApart({ time, distance }) {
   const most = distance.reduce((a, b) => Math.max(a, b), 0);
   document.querySelector("#apart-text").textContent = `Mean ${mean.toFixed(3)} m, at most ${most.toFixed(3)} m; at the same times, maps not aligned.`;
   const place = document.querySelector("#apart");
-  const options = { width: place.clientWidth, height: 160, scales: { x: { time: false } }, axes: [{ values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { size: 56 }], series: [{ label: "time", value: (_, v) => (v === null ? "–" : seconds(v)) }, { label: "apart [m]", stroke: "#0b6bcb" }] };
+  const options = { width: place.clientWidth, height: 160, scales: { x: { time: false } }, axes: [{ values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { size: 56 }], series: [{ label: "time", value: (_, v) => (v === null ? "–" : seconds(v)) }, { label: "apart", stroke: "#0b6bcb", value: (_, v) => (v === null || v === undefined ? "–" : `${v.toFixed(3)} m`) }] };
   new uPlot(options, [Array.from(time), Array.from(distance)], place);
 }
 
@@ -89,7 +90,9 @@ async function main() {
   document.querySelector("#kind").textContent = data.runs.map((run) => `${run.name}: ${run.kind}, ${run.samples.scans} scans`).join("; ");
   const sides = ["left", "right"].flatMap((side, k) => [element("i", { style: `background:${RUN_COLOURS[k]}` }), `${data.names[k]} (${side}) `]);
   document.querySelector("#runs").append(...sides);
-  new Pair(data.runs);
+  const one = () => document.querySelector("#pair").classList.contains("one");
+  const { views } = new Pair(data.runs);
+  for (const on of [true, false]) addEventListener(on ? "beforeprint" : "afterprint", () => views.forEach((view) => view.print(on, one() ? PAPER : PAPER / 2 - 10)));
   showApart(data.apart);
   fillTable("#figures", data.names, data.figures);
   fillTable("#parameters", data.names, data.parameters.length ? data.parameters : [["none", "", ""]]);

@@ -21,12 +21,15 @@ const SIGMA_COLOURS = ["#1a9850", "#91cf60", "#fee08b", "#fc8d59", "#d73027"]; /
 const ERROR_SCALES = [1, 2, 5, 10, 20, 50, 100];
 const LONGEST_ERROR = 0.6; // [m] that the longest error is drawn as, at most
 const SIGMA_LIMITS = [0.01, 0.03, 0.1, 0.3]; // [m]
+const SIGMA_KEY = ["1 cm or less", "3 cm", "10 cm", "30 cm", "more"];
+
+const stripes = (colours) => (colours.length === 1 ? colours[0] : `linear-gradient(90deg, ${colours.join(", ")})`);
 
 // The map of a run to pan and zoom, with its layers. Metres are Leaflet's plain coordinates: [y, x].
 class MapView {
   constructor(place, data) {
     this.data = data;
-    this.map = L.map(place, { crs: L.CRS.Simple, minZoom: -6, maxZoom: 9, zoomSnap: 0.25, attributionControl: false, preferCanvas: true });
+    this.map = L.map(place, { crs: L.CRS.Simple, minZoom: -6, maxZoom: 9, zoomSnap: 0.25, attributionControl: false, renderer: L.canvas({ tolerance: 4 }) }); // a click need not hit a thin line
     L.control.scale({ imperial: false, maxWidth: 160 }).addTo(this.map);
     this.layers = [];
     this.robot = null;
@@ -72,12 +75,20 @@ class MapView {
     return [poses[3 * sample + 1] + dy, poses[3 * sample] + dx];
   }
 
+  // Paper shows what the window shows, so many pixels wide.
+  print(on, width) {
+    const { clientWidth, clientHeight, style } = this.map.getContainer();
+    const size = on ? { width: `${clientWidth}px`, height: `${clientHeight}px`, zoom: Math.min(1, width / clientWidth) } : { width: "", height: "", zoom: "" };
+    Object.assign(style, size);
+  }
+
   fit() {
     this.map.fitBounds(this.bounds.pad(0.02), { animate: false });
   }
 
-  add(name, colour, layer, on) {
-    this.layers.push({ name, colour, layer, on });
+  // A layer with its colours, of which `key` says what each means.
+  add(name, colours, layer, on, key = []) {
+    this.layers.push({ name, colours: [colours].flat(), layer, on, key });
     if (on) layer.addTo(this.map);
   }
 
@@ -141,10 +152,11 @@ class MapView {
 
   addTrajectory() {
     const { state, time } = this.data.samples;
-    this.add("trajectory by tracking state", COLOURS.states[0], this.coloured(state, COLOURS.states), true);
+    const seen = COLOURS.states.map((_, code) => code).filter((code) => code === 0 || state.includes(code));
+    this.add("trajectory by tracking state", seen.map((code) => COLOURS.states[code]), this.coloured(state, COLOURS.states), true, seen.map((code) => this.data.samples.states[code]));
     const last = time.length ? time[time.length - 1] || 1 : 1;
     const steps = Array.from(time, (t) => Math.min(TIME_COLOURS.length - 1, Math.floor((t / last) * TIME_COLOURS.length)));
-    this.add("trajectory by time (dark to light)", TIME_COLOURS[4], this.coloured(steps, TIME_COLOURS), false);
+    this.add("trajectory by time (dark to light)", TIME_COLOURS, this.coloured(steps, TIME_COLOURS), false);
   }
 
   nearestSample(latlng) {
@@ -182,8 +194,8 @@ class MapView {
     }
     const group = L.layerGroup();
     lines.forEach((part, k) => part.length && group.addLayer(L.polyline(part, { color: SIGMA_COLOURS[k], weight: 4, interactive: false })));
-    this.add("chain edges by uncertainty (green 1 cm, red 30 cm)", SIGMA_COLOURS[1], group, false);
-    if (odometry.length) this.add("edges by odometry alone", "#c026d3", L.polyline(odometry, { color: "#c026d3", weight: 5, interactive: false }), false);
+    this.add("chain edges by uncertainty", SIGMA_COLOURS, group, false, SIGMA_KEY);
+    if (odometry.length) this.add("chain edges by odometry", "#c026d3", L.polyline(odometry, { color: "#c026d3", weight: 5, interactive: false }), false);
   }
 
   addClosures() {
@@ -247,7 +259,7 @@ class MapView {
       const line = [[ends[4 * k + 1], ends[4 * k]], [ends[4 * k + 3], ends[4 * k + 2]]];
       group.addLayer(L.polyline(line, { color: SIGMA_COLOURS[above], weight: 2, interactive: false }));
     }
-    this.add(`relations by error (green 1 cm, red 30 cm), the worst ${off.length} of ${truth.relations}`, SIGMA_COLOURS[3], group, false);
+    this.add(`relations by error, the worst ${off.length} of ${truth.relations}`, SIGMA_COLOURS, group, false, SIGMA_KEY);
   }
 
   // The points of a node's scan, placed by a pose.
@@ -307,7 +319,9 @@ class MapView {
     for (const entry of this.layers) {
       const box = element("input", { type: "checkbox", checked: entry.on });
       box.addEventListener("change", () => (box.checked ? entry.layer.addTo(this.map) : entry.layer.remove()));
-      place.append(element("label", {}, box, element("i", { style: `background:${entry.colour}` }), entry.name));
+      const swatch = entry.key.length ? null : element("i", { style: `background:${stripes(entry.colours)}` });
+      place.append(element("label", {}, box, swatch, entry.name));
+      if (entry.key.length) place.append(element("p", { class: "key" }, ...entry.key.flatMap((text, k) => [element("i", { style: `background:${entry.colours[k]}` }), `${text} `])));
     }
   }
 }

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 "use strict";
 
+const MOST_FAULTS = 8; // in sight
+const PAPER = 660; // [px] A4 without its margins
+
 function fillTables(data) {
   const row = ([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, String(value)));
   document.querySelector("#figures").append(...data.figures.map(row));
@@ -12,8 +15,10 @@ function fillTables(data) {
   document.querySelector("#troubles").append(...troubles.map(({ text, advice }) => element("li", {}, element("b", {}, `${text}: `), advice)));
   document.querySelector("#wrong").hidden = !troubles.length;
   const faults = data.odometry_faults.first.map((fault) => `odometry ${fault.kind} at ${seconds(fault.time - data.samples.begin)}: ${fault.distance.toFixed(2)} m, ${degrees(fault.angle)}`);
-  const notes = [...data.notes, ...faults];
-  document.querySelector("#notes").append(...(notes.length ? notes : ["nothing to note"]).map((note) => element("li", {}, note)));
+  const items = (texts) => texts.map((text) => element("li", {}, text));
+  document.querySelector("#notes").append(...items(data.notes.length || faults.length ? data.notes : ["nothing to note"]));
+  if (faults.length > MOST_FAULTS) document.querySelector("#notes").after(element("details", {}, element("summary", {}, `${faults.length} faults of odometry`), element("ul", {}, ...items(faults))));
+  else document.querySelector("#notes").append(...items(faults));
 }
 
 let view = null; // also for who wants to look into the page from its console
@@ -32,6 +37,8 @@ async function main() {
   view.onTime = (sample) => timeline.select(sample);
   view.onClosure = (k) => closures.select(k);
   view.onNode = (node) => closures.showNode(node);
+  timeline.begin();
+  for (const on of [true, false]) addEventListener(on ? "beforeprint" : "afterprint", () => view.print(on, PAPER));
   document.body.dataset.ready = "true";
 }
 

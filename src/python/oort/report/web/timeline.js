@@ -18,6 +18,14 @@ class Timeline {
     this.chart(place, "share of the returns on the local map (inlier ratio)", [x, plain(samples.inlier_ratio)], [
       { label: "inlier ratio", stroke: "#0b8043", width: 1, value: (_, v) => (v === null ? "–" : v.toFixed(3)) },
     ], [0, 1]);
+    const { way_scale, turn_scale } = samples; // none in a run of an earlier version
+    if (way_scale !== undefined && way_scale.some((value) => !Number.isNaN(value))) {
+      const factor = (_, v) => (v === null ? "–" : v.toFixed(3));
+      this.chart(place, "how far the base drives and turns where odometry says 1, as learned", [x, plain(way_scale), plain(turn_scale)], [
+        { label: "drives", stroke: "#7c3aed", width: 1.5, value: factor },
+        { label: "turns", stroke: "#0891b2", width: 1.5, value: factor },
+      ], (_, low, high) => [Math.min(0.95, low ?? 1), Math.max(1.05, high ?? 1)]);
+    }
     if (truth !== null && truth.off !== null) {
       this.chart(place, "off the truth [m]", [x, plain(truth.off)], [
         { label: "off", stroke: "#e11d48", width: 1, value: (_, v) => (v === null ? "–" : `${v.toFixed(4)} m`) },
@@ -78,6 +86,11 @@ class Timeline {
       chart.setCursor({ left, top: 40 }, false);
     }
     this.tell(sample);
+  }
+
+  // Before anybody has moved along it.
+  begin() {
+    if (this.samples.time.length) this.output.textContent = "move along the charts, or by the arrow keys here";
   }
 
   tell(sample) {

@@ -105,6 +105,6 @@ class LiveMap {
     const box = element("input", { type: "checkbox", id: "follow", checked: true });
     box.addEventListener("change", () => (this.follow = box.checked));
     this.onFollow = (on) => (box.checked = on);
-    place.append(element("label", {}, box, " follow the robot"));
+    place.append(element("label", {}, box, "follow the robot"));
   }
 }
