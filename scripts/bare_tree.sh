@@ -6,18 +6,20 @@
 # builds with it.
 #   scripts/bare_tree.sh bookworm | trixie
 #   UBUNTU_MIRROR=URL scripts/bare_tree.sh noble
+#   scripts/bare_tree.sh arm64             Debian 12 for 64-bit ARM, whose programs qemu runs (package qemu-user-static)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 suite=${1:-}
+root=$PWD/build/wheel/$suite
+options=(--variant=minbase "--include=python3-venv,libpython3-dev")
 case $suite in
   bookworm | trixie | noble) ;;
-  *) echo "usage: scripts/bare_tree.sh bookworm | trixie | noble" >&2; exit 2 ;;
+  arm64) suite=bookworm; options+=(--arch=arm64) ;;
+  *) echo "usage: scripts/bare_tree.sh bookworm | trixie | noble | arm64" >&2; exit 2 ;;
 esac
-root=$PWD/build/wheel/$suite
 [ ! -x "$root/usr/bin/python3-outside" ] || exit 0
 command -v debootstrap >/dev/null || { echo "debootstrap is not there: install Debian's package debootstrap" >&2; exit 1; }
 mkdir -p build/wheel
-options=(--variant=minbase --include=python3-venv,libpython3-dev)
 if [ "$suite" = noble ]; then
   : "${UBUNTU_MIRROR:?names a mirror of the Ubuntu archive for the processor of this machine}"
   keys=build/wheel/ubuntu-keyring  # Debian 12 has no such package; that of Debian 13 is signed by Debian
@@ -26,7 +28,7 @@ if [ "$suite" = noble ]; then
     chroot build/wheel/trixie sh -c "cd /tmp && apt-get update -q && apt-get download -q ubuntu-keyring" >"$root.log"
     dpkg-deb -x build/wheel/trixie/tmp/ubuntu-keyring_*.deb $keys
   fi
-  options+=(--components=main,universe "--keyring=$keys/usr/share/keyrings/ubuntu-archive-keyring.gpg")
+  options+=("--components=main,universe" "--keyring=$keys/usr/share/keyrings/ubuntu-archive-keyring.gpg")
   origin=("$UBUNTU_MIRROR" gutsy)  # the script of all that came after it
 else
   origin=("$({ cat /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null || true; } |
