@@ -11,11 +11,17 @@ suite=${1:-bookworm}
 root=build/wheel/$suite
 scripts/bare_tree.sh "$suite"
 
-tag=$(chroot $root python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
-wheel=$(ls dist/oort-*-"$tag"-*.whl) || { echo "dist/ has no wheel for $tag; see scripts/wheel.sh" >&2; exit 1; }
-rm -rf $root/try && mkdir -p $root/try/wheels
-.venv/bin/pip download --quiet --dest $root/try/wheels --python-version "${tag#cp}" --only-binary=:all: "$wheel"
-cat >$root/try/run.sh <<'RUN'
+tag=$(chroot "$root" python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+machine=$(chroot "$root" uname -m)
+wheel=$(ls dist/oort-*-"$tag"-*_"$machine".whl) || { echo "dist/ has no wheel for $tag on $machine; see scripts/wheel.sh" >&2; exit 1; }
+rm -rf "$root"/try && mkdir -p "$root"/try/wheels
+if [ "$suite" = arm64 ]; then  # a pip that qemu runs knows best what runs there
+  pip=(build/wheel/tools-arm64/bin/pip download)
+else
+  pip=(.venv/bin/pip download --python-version "${tag#cp}" --only-binary=:all:)
+fi
+"${pip[@]}" --quiet --dest "$root"/try/wheels "$wheel"
+cat >"$root"/try/run.sh <<'RUN'
 set -e
 cd /try
 python3 -m venv venv
@@ -25,11 +31,11 @@ venv/bin/oort replay home/*.bag --out map --quiet
 venv/bin/oort check home/*.bag
 venv/bin/python -c 'import oort; print(len(oort.load_map("map/map")), "nodes")'
 RUN
-env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root unshare --net chroot $root bash /try/run.sh
+env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root unshare --net chroot "$root" bash /try/run.sh
 
-.venv/bin/oort replay $root/try/home/*.bag --out $root/try/here --quiet
+.venv/bin/oort replay "$root"/try/home/*.bag --out "$root"/try/here --quiet
 for file in map.map_capnp report.html map.png; do
-  [ -s $root/try/map/$file ] || { echo "$file was not made" >&2; exit 1; }
+  [ -s "$root"/try/map/$file ] || { echo "$file was not made" >&2; exit 1; }
 done
-cmp $root/try/map/map.map_capnp $root/try/here/map.map_capnp
+cmp "$root"/try/map/map.map_capnp "$root"/try/here/map.map_capnp
 echo "The wheel works on $suite; its map has the bytes of the map made here."
