@@ -38,7 +38,7 @@ NOT_RUN = {
     "needs ROS 1": 9,
     "needs ROS 2": 5,
     "needs a long recording": 1,
-    "needs docker": 2,
+    "needs docker": 1,
     "takes minutes": 20,
 }
 
