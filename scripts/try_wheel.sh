@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Tries the wheel in dist/ where nothing else is: a bare Debian or Ubuntu with Python (scripts/bare_tree.sh, as root),
 # into which pip installs from a folder of wheels, without a network. A home is simulated and mapped there, the picture
-# and the page are made, and the map must have the bytes of the map that .venv makes here.
+# and the page are made, and the map must have the bytes of the map that .venv makes here (on arm64: its poses).
 #   scripts/try_wheel.sh [SUITE]      SUITE is bookworm if not given; its Python must be that of the wheel
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -37,5 +37,17 @@ env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root unshare --net chroot "$root
 for file in map.map_capnp report.html map.png; do
   [ -s "$root"/try/map/$file ] || { echo "$file was not made" >&2; exit 1; }
 done
-cmp "$root"/try/map/map.map_capnp "$root"/try/here/map.map_capnp
-echo "The wheel works on $suite; its map has the bytes of the map made here."
+if [ "$suite" = arm64 ]; then  # its multiplications and additions are fused: the last bits differ
+  .venv/bin/python - "$root"/try/map/trajectory.tum "$root"/try/here/trajectory.tum <<'RUN'
+import sys
+import numpy as np
+there, here = map(np.loadtxt, sys.argv[1:])
+off = np.abs(there - here).max()
+print(f"{len(there)} poses differ by {off:.1e} from those made here")
+sys.exit(bool(off > 1e-9))
+RUN
+else
+  cmp "$root"/try/map/map.map_capnp "$root"/try/here/map.map_capnp
+  echo "Its map has the bytes of the map made here."
+fi
+echo "The wheel works on $suite."
