@@ -60,7 +60,7 @@ def _export(base: Path, format_: str, name: str) -> Path:
     return base.parent / name
 
 
-@pytest.mark.parametrize("format_", FORMATS)
+@pytest.mark.parametrize("format_", [format_ for format_ in FORMATS if format_ != "rerun"])  # each has its own ids
 def test_the_same_map_gives_the_same_bytes(base: Path, format_: str) -> None:
     first = _export(base, format_, "a.x")
     files = sorted(base.parent.glob("a*"))

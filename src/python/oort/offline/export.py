@@ -20,6 +20,7 @@ from oort.export.map_server import write_map_server
 from oort.export.mcap import write_mcap
 from oort.export.named_rooms import ROOMS, NamedRoom, named_rooms
 from oort.export.nav2 import thin_route, write_docks, write_keepout, write_route
+from oort.export.rerun import write_rerun
 from oort.export.tum import write_tum
 from oort.export.valetudo import write_valetudo
 from oort.export.walls import fit_walls
@@ -39,6 +40,7 @@ FORMATS = {
     "nav2-route": "graph of the ways driven for nav2's route server (GeoJSON)",
     "valetudo": "map for home automation in Valetudo's JSON",
     "mcap": "the solved drive for Foxglove and ros2 bag play: map, tf, trajectory, the nodes' scans",
+    "rerun": "the same for Rerun: map, trajectory, places, the nodes' poses and scans over time",
     "g2o": "the pose graph",
     "tum": "poses of the sensor at the nodes, TUM",
     "kitti": "the same, KITTI",
@@ -144,6 +146,12 @@ def _route(map_: Map, _: Parameters, out: Path) -> None:
     write_route(out, *thin_route(map_.node_poses[:, :2], ends))
 
 
+def _rerun(map_: Map, parameters: Parameters, out: Path) -> None:
+    places = places_of(map_)
+    shown = [(f"{space}/{id_}", pose) for space, id_, pose in places if not is_area(space)]
+    write_rerun(out, map_, _grid(map_, parameters), shown, areas_of(places))
+
+
 def _tum(map_: Map, _: Parameters, out: Path) -> None:
     write_tum(out, [f"{time:.6f}" for time in map_.cloud_times.tolist()], map_.node_poses)
 
@@ -158,6 +166,7 @@ _WRITERS: dict[str, Callable[[Map, Parameters, Path], list[str] | None]] = {
     "nav2-route": _route,
     "valetudo": _valetudo,
     "mcap": lambda map_, parameters, out: write_mcap(out, map_, _grid(map_, parameters)),
+    "rerun": _rerun,
     "g2o": lambda map_, _, out: write_g2o(out, pose_graph(map_)),
     "tum": _tum,
     "kitti": lambda map_, _, out: write_kitti(out, map_.node_poses),
