@@ -61,6 +61,19 @@ def test_each_drive_is_mapped_as_alone_and_failures_are_told(
     assert "no laser scans" in page
 
 
+def test_a_missing_recording_costs_no_other(fleet: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    gone = str(tmp_path / "gone.clf")
+    assert main([gone, str(fleet / "drive1.clf"), "--out", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr().out
+    assert f"gone: '{gone}' does not exist" in told
+    assert "1 of 2 mapped" in told
+    assert "does not exist" in str(_row(tmp_path / "out", "gone")["error"])
+    assert "does not exist" in (tmp_path / "out" / "index.html").read_text()
+    assert not (tmp_path / "out" / "gone").exists()
+    assert main([gone, "--out", str(tmp_path / "alone")]) == 2
+    assert "no recording could be mapped" in capsys.readouterr().err
+
+
 def test_what_was_done_is_kept_until_its_input_changes(
     fleet: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -107,5 +120,3 @@ def test_two_recordings_never_share_a_folder(tmp_path: Path) -> None:
     assert [job.folder.name for job in make_jobs(paths, tmp_path)] == ["drive", "tuesday-drive"]
     with pytest.raises(InputError, match="would have one folder"):
         make_jobs([*paths, str(tmp_path / "tuesday" / "drive.bag")], tmp_path)
-    with pytest.raises(InputError, match="does not exist"):
-        make_jobs([str(tmp_path / "none.bag")], tmp_path)

@@ -4,7 +4,6 @@
 
 import hashlib
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -15,7 +14,7 @@ from typing import Any
 
 from oort.errors import InputError, OortError
 from oort.export.files import write_atomically
-from oort.offline.workers import fingerprint, in_pool, is_url, local_copy, open_pool
+from oort.offline.workers import fingerprint, in_pool, local_copy, open_pool
 
 _STATE = "batch.json"  # within a drive's folder: what it was made from; written last
 
@@ -61,11 +60,12 @@ class _Mapped:
 
 
 def make_jobs(recordings: Sequence[str], out: Path, parameters: str | None = None) -> list[Job]:
-    """A job per recording, each with a folder of its own name. Raises InputError for a missing or doubled one."""
+    """A job per recording, each with a folder of its own name. Raises InputError for a doubled one.
+
+    A missing one is told by run_batch, as any that cannot be mapped.
+    """
     jobs: dict[str, Job] = {}
     for recording in recordings:
-        if not is_url(recording) and not os.path.exists(recording):
-            raise InputError(f"{recording} does not exist")
         name = Path(recording).name.split(".")[0] or Path(recording).name
         if name in jobs:  # two folders with recordings of one name
             name = f"{Path(recording).absolute().parent.name}-{name}"
