@@ -22,6 +22,7 @@ from tornado.websocket import websocket_connect
 
 import oort
 from helpers.live_rig import driven, until
+from helpers.scenes import room_scan
 from oort.live import LiveSession
 from oort.recording import open_recording
 from oort.simulate import Drive
@@ -122,6 +123,9 @@ def test_buttons_make_the_calls(page: Page, shown: Viewer, live: LiveSession) ->
     _open(page, shown)
     page.get_by_role("button", name="Pause").click()
     page.get_by_text("paused:").wait_for()
+    assert page.locator("#figures").get_by_text("none").count() == 1
+    live.add_scan(lambda: room_scan(0.0, 0.0, 0.0, 6.5))
+    page.locator("#figures").get_by_text("while paused: 1").wait_for()
     page.get_by_role("button", name="Resume").click()
     until(lambda: live.snapshot.state is oort.State.MAPPING)
     driven(live, scans=5, start=7.0)

@@ -62,6 +62,8 @@ class Figures:
         self.scans_arrived = 0
         self.scans_mapped = 0
         self.drops = Drops()
+        self.scans_while_paused = 0
+        """came while mapping was paused, and were not mapped, as was asked"""
         self.clock_jumps = 0
         """how often the scans' clock was set back"""
         self.milliseconds = Window()

@@ -222,6 +222,7 @@ class LiveSession:
 
     def _take(self, item: ScanItem) -> None:
         if self._session.state is not State.MAPPING:
+            self.figures.scans_while_paused += self._session.state is State.PAUSED
             return
         if item.scan is None:
             self._leave_out(item.refused, item.why)

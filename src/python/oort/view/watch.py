@@ -70,6 +70,7 @@ class Watch:
             "delay_ms": delays,
             "scans": [figures.scans_mapped, figures.scans_arrived],
             "left_out": dict(figures.drops.counts),
+            "while_paused": figures.scans_while_paused,
             "troubles": [str(trouble) for trouble in live.troubles],
             "failure": live.failure,
             "places": places,

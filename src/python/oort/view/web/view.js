@@ -45,12 +45,14 @@ class LiveView {
 
   figures(state) {
     const [waiting, since] = state.waiting_for_odometry;
+    const left_out = Object.entries(state.left_out).map(([reason, count]) => `${reason}: ${count}`);
+    if (state.while_paused) left_out.push(`while paused: ${state.while_paused}`);
     const rows = [
       ["scans", `${state.scans[0]} mapped of ${state.scans[1]} that came, ${state.scan_rate.toFixed(1)} a second`],
       ["queue", `${state.queue} in it${waiting ? `, ${waiting} wait for odometry, the first for ${since.toFixed(1)} s` : ""}`],
       ["to map a scan", milliseconds(state.mapping_ms)],
       ["from arrival to pose", milliseconds(state.delay_ms)],
-      ["left out", Object.entries(state.left_out).map(([reason, count]) => `${reason}: ${count}`).join("; ") || "none"],
+      ["left out", left_out.join("; ") || "none"],
     ];
     $("figures").replaceChildren(...rows.map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value))));
     const troubles = state.troubles.length ? state.troubles : ["nothing, as far as the scans show"];
