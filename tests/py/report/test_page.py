@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """report.html and compare.html in a real browser."""
 
+import io
 import json
 from collections.abc import Iterator
 from dataclasses import replace
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Page
 
 from oort.cli.compare import main as compare
@@ -303,12 +305,30 @@ def test_two_runs_side_by_side_and_over_each_other(page: Page, run: Path, tmp_pa
     assert "at most 0.000 m" in page.locator("#apart-text").inner_text()
     assert page.locator("#map-b").is_visible()
     page.get_by_label("over each other").check()
+    page.wait_for_function("() => document.querySelectorAll('#map-a img.over').length === 2")
     assert not page.locator("#map-b").is_visible()
-    assert page.locator("#map-a img.over").count() == 1
     first, second = page.locator("#name").inner_text().split(" and ")
-    assert page.locator("#runs").inner_text().split() == [*first.split(), "(left)", *second.split(), "(right)"]
+    assert page.locator("#walls").inner_text().split() == ["walls", "of", *first.split(), *second.split(), "both"]
+    assert not page.locator("#runs").is_visible()
     page.get_by_label("side by side").check()
     assert page.locator("#map-a img.over").count() == 0
+    assert page.locator("#runs").inner_text().split() == [*first.split(), "(left)", *second.split(), "(right)"]
+
+
+def test_walls_have_the_colour_of_the_run_that_has_them(page: Page, run: Path, tmp_path: Path) -> None:
+    data = read_page_data(run / "report.html")
+    grid = data["grid"]
+    moved = {**data, "grid": {**grid, "origin": [grid["origin"][0] + 20 * grid["resolution"], grid["origin"][1]]}}
+    (tmp_path / "moved.html").write_bytes(make_report_page("moved", moved))
+    assert compare([str(run), str(tmp_path / "moved.html"), "--out", str(tmp_path / "both.html")]) == 0
+    _open(page, tmp_path / "both.html")
+    page.get_by_label("over each other").check()
+    page.wait_for_function("() => document.querySelectorAll('#map-a img.over').length === 2")
+    shown = Image.open(io.BytesIO(page.locator("#map-a").screenshot())).convert("RGB")
+    colours = {colour for count, colour in shown.getcolors(1 << 24) or [] if count > 100}
+    assert {(0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00), (0x00, 0x2A, 0x00)} <= colours
+    page.locator("#share").fill("0")
+    assert page.locator("#map-a img.over").evaluate_all("all => all.map((one) => one.style.opacity)") == ["1", "0"]
 
 
 def test_what_is_no_report_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

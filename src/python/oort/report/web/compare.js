@@ -3,35 +3,55 @@
 "use strict";
 
 const PAPER = 660; // [px] A4 without its margins
-const RUN_COLOURS = ["#0b6bcb", "#d6336c"];
+const RUN_COLOURS = ["#0072b2", "#d55e00"]; // Okabe and Ito's blue and vermilion: one on the other is nearly black
+const BOTH_COLOUR = "#002a00"; // that product
+const WALL = 100, FREE = 250; // grey values below and above
 
-// One map per run, or the second's walls and trajectory on the first's.
+// A map with its walls in a colour, on white.
+async function coloured(png, colour) {
+  const image = new Image();
+  image.src = `data:image/png;base64,${png}`;
+  await image.decode();
+  const canvas = element("canvas", { width: image.width, height: image.height });
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const pixels = context.getImageData(0, 0, image.width, image.height);
+  const wall = [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16));
+  for (let k = 0; k < pixels.data.length; k += 4) {
+    const grey = pixels.data[k];
+    pixels.data.set(grey < WALL ? wall : grey > FREE ? [255, 255, 255] : [236, 236, 236], k);
+  }
+  context.putImageData(pixels, 0, 0);
+  return canvas.toDataURL();
+}
+
+// One map per run, or the walls and trajectories of both on one: where walls agree their colours make a dark one.
 class Pair {
   constructor(runs) {
     const places = ["#map-a", "#map-b"].map((id) => document.querySelector(id));
     this.views = runs.map((run, k) => new MapView(places[k], run));
     this.pair = document.querySelector("#pair");
-    this.over = this.overlay(runs[1]);
+    this.over = null; // made when it is first shown
     this.follow();
     for (const radio of document.querySelectorAll("[name=mode]")) radio.addEventListener("change", () => this.show(radio.value));
     document.querySelector("#share").addEventListener("input", (event) => this.share(event.target.value / 100));
-    this.share(0.5);
   }
 
-  overlay(run) {
+  async overlay() {
     const group = L.layerGroup();
-    const grid = run.grid;
-    if (grid !== null) {
-      const bounds = this.views[1].bounds;
-      this.image = L.imageOverlay(`data:image/png;base64,${grid.png}`, bounds, { className: "grid over", alt: "occupancy map of the second run" });
-      group.addLayer(this.image);
+    this.images = [];
+    for (const [k, { data, bounds }] of this.views.entries()) {
+      if (data.grid === null) continue;
+      const alt = `occupancy map of the ${["first", "second"][k]} run`;
+      this.images[k] = L.imageOverlay(await coloured(data.grid.png, RUN_COLOURS[k]), bounds, { className: "grid over", alt });
+      group.addLayer(this.images[k]);
     }
-    this.ways = this.views.map((view, k) => {
-      const poses = view.data.samples.pose;
+    this.views.forEach(({ data }, k) => {
+      const poses = data.samples.pose;
       const line = Array.from({ length: poses.length / 3 }, (_, n) => [poses[3 * n + 1], poses[3 * n]]);
-      return L.polyline(line, { color: RUN_COLOURS[k], weight: 2, interactive: false });
+      group.addLayer(L.polyline(line, { color: RUN_COLOURS[k], weight: 1, interactive: false }));
     });
-    this.ways.forEach((way) => group.addLayer(way));
+    this.share(this.value);
     return group;
   }
 
@@ -49,16 +69,21 @@ class Pair {
     b.setView(a.getCenter(), a.getZoom(), { animate: false });
   }
 
+  // In the middle both are whole, at an end there is one of them.
   share(value) {
-    if (this.image) this.image.setOpacity(value);
+    this.value = value;
+    [1 - value, value].forEach((part, k) => this.images?.[k]?.setOpacity(Math.min(1, 2 * part)));
   }
 
-  show(mode) {
+  async show(mode) {
+    if (mode === "over") this.over ??= await this.overlay();
+    if (mode !== document.querySelector("[name=mode]:checked").value) return; // the other was chosen meanwhile
     this.pair.classList.toggle("one", mode === "over");
+    for (const key of document.querySelectorAll("[data-mode]")) key.hidden = key.dataset.mode !== mode;
     const { map, layers } = this.views[0];
-    for (const { name, layer, on } of layers) if (on && name !== "walls") mode === "over" ? layer.remove() : layer.addTo(map);
+    for (const { layer, on } of layers) if (on) mode === "over" ? layer.remove() : layer.addTo(map);
     if (mode === "over") this.over.addTo(map);
-    else this.over.remove();
+    else this.over?.remove();
     this.views.forEach((view) => view.map.invalidateSize());
     this.views[0].fit();
   }
@@ -90,6 +115,8 @@ async function main() {
   document.querySelector("#kind").textContent = data.runs.map((run) => `${run.name}: ${run.kind}, ${run.samples.scans} scans`).join("; ");
   const sides = ["left", "right"].flatMap((side, k) => [element("i", { style: `background:${RUN_COLOURS[k]}` }), `${data.names[k]} (${side}) `]);
   document.querySelector("#runs").append(...sides);
+  const walls = [...RUN_COLOURS, BOTH_COLOUR].flatMap((colour, k) => [element("i", { style: `background:${colour}` }), `${data.names[k] ?? "both"} `]);
+  document.querySelector("#walls").append("walls of ", ...walls);
   const one = () => document.querySelector("#pair").classList.contains("one");
   const { views } = new Pair(data.runs);
   for (const on of [true, false]) addEventListener(on ? "beforeprint" : "afterprint", () => views.forEach((view) => view.print(on, one() ? PAPER : PAPER / 2 - 10)));
