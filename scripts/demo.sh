@@ -9,4 +9,4 @@ out=oort-out/home
 .venv/bin/python -m oort.simulate --seed 1 --name home --out $out
 .venv/bin/python -m oort.replay $out/home.bag --events $out/home.events.json --out $out
 .venv/bin/python -m oort.evaluate ate $out/trajectory.tum $out/home.truth.tum
-echo "Look at $out/map.png; the saved map is $out/map.map_capnp with its .map_meta_capnp and .md5."
+echo "Open $out/report.html in a browser, or look at $out/map.png; the saved map is $out/map.map_capnp with its .map_meta_capnp and .md5."
