@@ -34,6 +34,9 @@ def test_areas_are_added_listed_and_removed(saved: str, capsys: pytest.CaptureFi
     assert areas.main([saved, "--add", "no_go_area", "carpet", *triangle]) == 0
     assert areas.main([saved, "--add", "no_go_line", "stairs", "--points", "0", "0", "1", "1"]) == 0
     capsys.readouterr()
+    assert areas.main([saved]) == 0
+    assert "-0.00" not in (said := capsys.readouterr().out)
+    assert "0.00 -0.10)" in said
     assert areas.main([saved, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert [(each["kind"], each["name"], len(each["points"])) for each in told] == [

@@ -45,7 +45,7 @@ def _change(args: argparse.Namespace) -> None:
 
 
 def _line(area: Area) -> str:
-    points = ", ".join(f"{x:.2f} {y:.2f}" for x, y in area.points)
+    points = ", ".join(f"{x:z.2f} {y:z.2f}" for x, y in area.points)
     return f"{area.kind}  {area.name}  ({points})"
 
 

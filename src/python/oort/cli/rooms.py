@@ -66,7 +66,7 @@ def _line(named: NamedRoom) -> str:
     x, y = named.room.centre
     return (
         f"{named.number:>3}  {named.name or '-':<16} {named.room.area:6.1f} m²  {size[0]:.1f} x {size[1]:.1f} m  "
-        f"at {x:.2f}, {y:.2f}  {doubt}"
+        f"at {x:z.2f}, {y:z.2f}  {doubt}"
     ).rstrip()
 
 

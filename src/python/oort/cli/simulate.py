@@ -191,7 +191,7 @@ def _summary(drive: Drive) -> str:
         f"{len(drive.home.rooms)} {'room' if len(drive.home.rooms) == 1 else 'rooms'} ({named}), "
         f"{drive.home.area:.0f} m2\n"
         f"{drive.duration / 60.0:.1f} minutes, {len(drive.scan_stamps)} scans, {drive.length:.1f} m driven\n"
-        f"odometry at the end off by {distance:.2f} m and {math.degrees(heading):+.1f} degrees"
+        f"odometry at the end off by {distance:.2f} m and {math.degrees(heading):+z.1f} degrees"
     )
 
 

@@ -105,7 +105,7 @@ def _text(value: Any) -> str:
         return "-"
     if isinstance(value, list):
         return ", ".join(map(_text, value)) or "none"
-    return f"{value:.3f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)
+    return f"{value:z.3f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)
 
 
 def _chains(map_: Map) -> int:

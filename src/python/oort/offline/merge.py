@@ -94,7 +94,7 @@ def _told(merged: Merged) -> list[str]:
     closures = merged.closures
     rejected = ", ".join(f"{why} {n}" for why, n in sorted(closures["rejected"].items()) if n)
     lines = [
-        f"the second map's origin was found at x {x:.2f} m, y {y:.2f} m, theta {theta:.3f} rad of the first, "
+        f"the second map's origin was found at x {x:z.2f} m, y {y:z.2f} m, theta {theta:z.3f} rad of the first, "
         f"{_FOUND_BY[merged.found_by]}: of {merged.views} views {merged.views_that_fit} fit there, "
         f"{merged.views_that_contradict} contradict",
         f"closures across: {closures['tried']} tried, {closures['accepted']} accepted, {merged.closures_kept} kept"

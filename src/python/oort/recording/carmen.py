@@ -259,7 +259,7 @@ def _mount(path: Path, readings: list[_Reading]) -> tuple[Pose, list[str]]:
     return (x, y, theta), [
         f"the laser's pose against the robot's changes by up to {shifts.max():.2f} m and "
         f"{math.degrees(turns.max()):.1f} degrees, as where the two were taken at different times: it is taken to sit "
-        f"at ({x:.3f}, {y:.3f}, {math.degrees(theta):.1f} deg) as in most scans"
+        f"at ({x:z.3f}, {y:z.3f}, {math.degrees(theta):z.1f} deg) as in most scans"
     ]
 
 

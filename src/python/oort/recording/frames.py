@@ -128,7 +128,7 @@ class FrameTree:
 
 def _told_by(link: Link) -> str:
     """What each topic says of a link that several topics tell, and what to do."""
-    said = [f"{topic} says ({x:.3f}, {y:.3f}, {theta:.3f})" for topic, (x, y, theta) in link.by_topic.items()]
+    said = [f"{topic} says ({x:z.3f}, {y:z.3f}, {theta:z.3f})" for topic, (x, y, theta) in link.by_topic.items()]
     several = f". {' and '.join(said)}: several programs tell it" if len(said) > 1 else ""
     return f"{several}; mount (--mount X Y THETA) says where it is"
 

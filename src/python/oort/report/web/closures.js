@@ -49,7 +49,7 @@ class Closures {
     this.details.replaceChildren(
       element("h3", {}, `Node ${moving} on node ${base}`),
       element("p", {}, this.reason(k)),
-      element("p", {}, `Inlier ratio ${ratio}; measured ${measured[0].toFixed(3)} m, ${measured[1].toFixed(3)} m, ${degrees(measured[2])}.`),
+      element("p", {}, `Inlier ratio ${ratio}; measured ${fixed(measured[0], 3)} m, ${fixed(measured[1], 3)} m, ${degrees(measured[2])}.`),
       element("p", { class: "key" }, element("i", { style: `background:${COLOURS.scans[0]}` }), `scan of node ${base} `, element("i", { style: `background:${COLOURS.around}` }), "of the nodes around it ", element("i", { style: `background:${COLOURS.scans[1]}` }), `scan of node ${moving} where the match put it`),
     );
     this.draw(base, moving, measured);
@@ -59,7 +59,7 @@ class Closures {
 
   showNode(node) {
     const [x, y, theta] = this.view.nodePose(node);
-    this.details.replaceChildren(element("h3", {}, `Node ${node}`), element("p", {}, `At ${x.toFixed(3)} m, ${y.toFixed(3)} m, ${degrees(theta)}.`));
+    this.details.replaceChildren(element("h3", {}, `Node ${node}`), element("p", {}, `At ${fixed(x, 3)} m, ${fixed(y, 3)} m, ${degrees(theta)}.`));
     this.draw(node, null, null);
     this.view.showScans([[node, this.view.drawnPose(node), COLOURS.scans[0]]]);
   }

@@ -50,4 +50,5 @@ function element(tag, attributes = {}, ...children) {
 }
 
 const seconds = (value) => (value < 120 ? `${value.toFixed(1)} s` : `${Math.floor(value / 60)} min ${Math.floor(value % 60)} s`);
-const degrees = (radians) => `${((radians * 180) / Math.PI).toFixed(2)}°`;
+const fixed = (value, digits) => value.toFixed(digits).replace(/^-(0\.0+)$/, "$1"); // no -0.00
+const degrees = (radians) => `${fixed((radians * 180) / Math.PI, 2)}°`;

@@ -27,7 +27,7 @@ class Calls {
   // Asks for a name for where the robot is, or for a point [x, y].
   name(point) {
     const { dialog } = this;
-    dialog.querySelector("#where").textContent = point === null ? "Where the robot is now." : `At ${point[0].toFixed(2)} m, ${point[1].toFixed(2)} m.`;
+    dialog.querySelector("#where").textContent = point === null ? "Where the robot is now." : `At ${fixed(point[0], 2)} m, ${fixed(point[1], 2)} m.`;
     dialog.querySelector("#id").value = "";
     dialog.returnValue = "";
     dialog.querySelector("#cancel").onclick = () => dialog.close();
