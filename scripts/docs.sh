@@ -14,4 +14,4 @@ command -v doxygen >/dev/null || { echo "doxygen is not there: install Debian's 
 told=$(.venv/bin/mkdocs build --strict --site-dir "$(realpath -m "$folder")" 2>&1) || { echo "$told" >&2; exit 1; }
 .venv/bin/python scripts/reference.py "$folder/python"
 { cat docs/Doxyfile; echo "OUTPUT_DIRECTORY = \"$folder\""; } | doxygen -
-echo "Open $folder/index.html (for its search: python3 -m http.server -d $folder), $folder/python/index.html and $folder/cpp/index.html."
+echo "Open $folder/index.html, $folder/python/index.html and $folder/cpp/index.html."

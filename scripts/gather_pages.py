@@ -22,7 +22,8 @@ def gather(folder: Path) -> None:
     A link called as the file that it leads to is called as the menu calls that page: on the site there is no such file.
     """
     shutil.rmtree(folder, ignore_errors=True)
-    waiting, known = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "docs/site.css"], set[Path]()
+    waiting, known = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], set[Path]()
+    waiting += [ROOT / "docs/site.css", ROOT / "docs/iframe-worker.js"]
     while waiting:
         path = waiting.pop()
         if path in known or not path.is_file() or ROOT not in path.parents:

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Browser
 from ruamel.yaml import YAML
 
 from conftest import ROOT
@@ -36,6 +37,22 @@ def test_the_site_builds_without_a_dead_link(pages: Path, tmp_path: Path) -> Non
     assert (tmp_path / "site/docs/images/home.png").is_file()
     assert ">Accuracy</a>" in (tmp_path / "site/docs/tuning.html").read_text()
     assert not re.search(r">[\w/]+\.md</a>", (tmp_path / "site/docs/tuning.html").read_text())
+
+
+def test_search_works_from_disk(pages: Path, tmp_path: Path, browser: Browser) -> None:
+    assert _build(pages, tmp_path).returncode == 0
+    errors: list[str] = []
+    context = browser.new_context(offline=True)
+    page = context.new_page()
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("request", lambda request: errors.append(request.url) if request.url.startswith("http") else None)
+    page.goto((tmp_path / "site/docs/loops.html").as_uri())
+    page.locator("input.md-search__input").click()
+    page.keyboard.type("loop closure")
+    page.locator(".md-search-result__item a").first.click()
+    page.wait_for_url("**/*.html?h=*")
+    context.close()
+    assert errors == []
 
 
 def test_a_dead_link_would_be_found(pages: Path, tmp_path: Path) -> None:
