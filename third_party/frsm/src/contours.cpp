@@ -16,8 +16,9 @@ namespace frsm {
 namespace {
 
 constexpr double kStepMargin = 1.1;
+// Three points of a wall seen at a grazing angle: of the longer link to the other, and from the line at most.
 constexpr double kSpacingRatio = 1.8;
-constexpr double kStraight = 0.04;  // [m] by which three points of a wall may miss a line
+constexpr double kStraight = 0.04;  // [m]
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 struct Link {
@@ -104,10 +105,11 @@ class Linker {
     if (between_beams > beam_step_) return false;
     const double range_a = std::hypot(a.x, a.y);
     const double range_b = std::hypot(b.x, b.y);
-    const double slope = std::abs(range_a - range_b) / (between_beams * std::min(range_a, range_b));
+    const double step = std::abs(range_a - range_b);
+    const double across = between_beams * std::min(range_a, range_b);
+    if (step <= params_.max_beam_slope * across) return true;
+    if (step > params_.max_straight_slope * across) return false;
     const std::size_t first = std::min(p, q);
-    if (slope <= params_.max_beam_slope) return true;
-    if (slope > params_.max_straight_slope) return false;
     return (first > 0 && is_straight(first - 1)) || (first + 2 < points_.size() && is_straight(first));
   }
 
