@@ -58,6 +58,16 @@ void require(bool holds, const std::string& section, const std::string& rule) {
   if (!holds) throw ParameterError(section + ": " + rule);
 }
 
+/// How a file has what a path names.
+std::string nested(const std::string& path) {
+  std::string text = "{\"", braces = "}";
+  for (const char c : path) {
+    if (c == '.') braces += '}';
+    text += c == '.' ? "\": {\"" : std::string(1, c);
+  }
+  return text + "\": ..." + braces;
+}
+
 }  // namespace
 
 Parameters::Parameters() {
@@ -133,6 +143,7 @@ std::string unknown_parameter(const std::string& whole_path) {
   };
   const std::string& nearest = *std::max_element(
       known.begin(), known.end(), [&](const auto& a, const auto& b) { return likeness(a) < likeness(b); });
+  if (nearest == path) return "\"" + path + "\" is written " + nested(path);
   return "unknown parameter \"" + path + "\"; the nearest known is \"" + nearest + "\"";
 }
 

@@ -3,7 +3,6 @@
 """Reads params.json, and finds the files that Oort ships."""
 
 import os
-import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -14,10 +13,6 @@ from oort.errors import ParameterError
 
 PRESETS = ("params", "kuri_original", "cartographer")
 """The files that Oort ships: the defaults, the documented values, and Cartographer's matchers."""
-
-
-_DOTTED = re.compile(r'unknown parameter "([^"]+\.[^"]+)"; the nearest known is "\1"')
-"""of a key that is known, but is no key of a file"""
 
 
 def read_parameters(path: str | os.PathLike[str] | None = None) -> Parameters:
@@ -31,15 +26,7 @@ def read_parameters(path: str | os.PathLike[str] | None = None) -> Parameters:
         ParameterError: the file cannot be read, or a key is unknown or its value not allowed. The message names the
             file, the line, the key's full path and, for an unknown key, the known key nearest to it.
     """
-    try:
-        parameters, notes = _core.read_parameters(str(packaged_path() if path is None else path))
-    except ParameterError as error:
-        dotted = _DOTTED.search(str(error))
-        if dotted is None:
-            raise
-        *sections, key = dotted[1].split(".")
-        nested = "".join(f'{{"{name}": ' for name in sections) + f'{{"{key}": ...' + "}" * (len(sections) + 1)
-        raise ParameterError(f'{str(error).partition(": unknown")[0]}: "{dotted[1]}" is written {nested}') from None
+    parameters, notes = _core.read_parameters(str(packaged_path() if path is None else path))
     for note in [*notes, *missing_viewers(parameters)]:
         warnings.warn(note, stacklevel=2)
     return parameters
