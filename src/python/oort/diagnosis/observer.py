@@ -73,6 +73,7 @@ class Observer:
         if len(self.stamps) > _KEPT:
             del self.stamps[: _KEPT // 2], self.odometry[: _KEPT // 2]
             self.samples = [sample for sample in self.samples if sample.begin >= self.stamps[0]]
+            self.after_pauses = {stamp for stamp in self.after_pauses if stamp >= self.stamps[0]}
 
     def pause(self) -> None:
         """Mapping is paused before the next scan: that none came since the last one is no fault."""
