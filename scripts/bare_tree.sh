@@ -19,6 +19,10 @@ case $suite in
 esac
 [ ! -x "$root/usr/bin/python3-outside" ] || exit 0
 command -v debootstrap >/dev/null || { echo "debootstrap is not there: install Debian's package debootstrap" >&2; exit 1; }
+if [ "$1" = arm64 ] && [ "$(uname -m)" != aarch64 ] && [ ! -e /proc/sys/fs/binfmt_misc/qemu-aarch64 ]; then
+  echo "arm64 programs do not run here: install Debian's package qemu-user-static, mount binfmt_misc" >&2
+  exit 1
+fi
 mkdir -p build/wheel
 if [ "$suite" = noble ]; then
   : "${UBUNTU_MIRROR:?names a mirror of the Ubuntu archive for the processor of this machine}"
