@@ -124,6 +124,7 @@ py::dict dict_of(const LaserFindings& findings) {
   py::dict dict;
   dict["beam_order"] = order;
   dict["body"] = body;
+  dict["repeated_scans"] = findings.repeated_scans;
   return dict;
 }
 

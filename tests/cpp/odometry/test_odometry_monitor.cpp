@@ -74,6 +74,19 @@ TEST_F(Driving, OdometryThatStandsStillIsFrozenOnceMuchIsMissedAndCatchesUp) {
   EXPECT_EQ(hypotheses.T_before_after[1].x, caught_up.x);
 }
 
+TEST_F(Driving, OdometryThatComesAtEachSecondScanIsNotCountedTwice) {
+  drive(20);
+  for (int k = 0; k < 20; ++k) {
+    odometry({});
+    monitor.moved(kStep, false);  // it went on, and no match tells
+    const MotionHypotheses hypotheses = odometry(kStep * kStep);
+    ASSERT_EQ(hypotheses.T_before_after.size(), 3u);
+    EXPECT_NEAR(hypotheses.T_before_after[0].x, kStep.x, 1e-9) << "half of it was driven already";
+    monitor.moved(kStep, true);
+  }
+  EXPECT_EQ(monitor.fault_count(), 0u);
+}
+
 TEST_F(Driving, AJumpAfterAStandstillMayBeWhatWasDrivenMeanwhile) {
   for (int k = 0; k < 20; ++k) {  // along a bare wall a scan does not tell that it moves
     odometry({});

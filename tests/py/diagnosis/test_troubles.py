@@ -168,3 +168,11 @@ def test_a_drive_that_is_uncertain() -> None:
     empty = [replaced(scan, ranges=np.full(len(scan.ranges), np.inf)) for scan in scans_of(DRIVE)]
     scans = [*scans_of(DRIVE)[:50], *empty[50:]]
     assert set(troubles_of(scans)) == {"uncertain"}
+
+
+def test_a_laser_that_sends_its_last_scan_again_is_told() -> None:
+    scans = scans_of(DRIVE)
+    stuck = [replaced(scan, ranges=scans[100].ranges) if 100 < k <= 120 else scan for k, scan in enumerate(scans)]
+    told = troubles_of(stuck)
+    assert list(told) == ["scan_repeated"]
+    assert 15 <= told["scan_repeated"].evidence["times"] <= 20

@@ -133,6 +133,7 @@ MotionHypotheses LocalSlam::expect(LocalScan& scan) {
     Pose2 moved = between(last_->T_odom_base_measured, scan.T_odom_base_measured);
     if (matcher.learns_odometry()) moved = matcher.corrected(moved);
     hypotheses = monitor_.judge(scan.cloud.time, moved);
+    if (last_->missed) hypotheses.T_before_after_reversed.reset();  // a poor match may come of the way before it
     scan.T_odom_base = last_->T_odom_base * hypotheses.T_before_after.front();
   }
   scan.T_odom_sensor = scan.T_odom_base * T_base_sensor();

@@ -19,7 +19,7 @@ namespace oort {
 enum class ScanOutcome {
   kNode,     ///< the scan made a node
   kLocated,  ///< it was located relative to the last node
-  kSkipped,  ///< it had too few returns: located by odometry alone, if there is a node to be relative to
+  kSkipped,  ///< it had too few returns, or was the scan before once more: located by odometry alone, if there is a node
 };
 
 /// As reports, messages and Python have it.
@@ -27,7 +27,7 @@ std::string_view to_string(ScanOutcome outcome);
 
 struct LocalCounts {
   std::uint64_t scans = 0;
-  std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size: extrapolated by odometry
+  std::uint64_t scans_too_small = 0;  ///< fewer returns than min_pointcloud_size, or repeated: extrapolated by odometry
 };
 
 /// The local lane: a scan with odometry in (or without: parameter use_odometry), its pose relative to the newest node

@@ -39,7 +39,7 @@ MotionHypotheses OdometryMonitor::judge(double time, const Pose2& T_before_after
   const bool was_moving = believed_ && believed_->interval >= OdometryTuning::kMinInterval &&
                           (distance(believed_->T_before_after) > OdometryTuning::kMoving * believed_->interval ||
                            std::abs(believed_->T_before_after.theta) > OdometryTuning::kTurning * believed_->interval);
-  if (is_frozen_ && !is_still(T_before_after)) {
+  if (!is_still(missed_) && !is_still(T_before_after)) {
     hypotheses.T_before_after = {inverse(missed_) * T_before_after, T_before_after};
     if (on) {
       const auto strangeness = [&](const Pose2& motion) {
@@ -79,13 +79,13 @@ void OdometryMonitor::moved(const Pose2& T_before_after, bool is_matched) {
     }
   };
   if (is_still(judged_.T_before_after)) {
-    if (is_matched) missed_ = missed_ * T_before_after;
-    const bool frozen =
-        distance(missed_) > OdometryTuning::kFrozenError || std::abs(missed_.theta) > OdometryTuning::kFrozenErrorTheta;
+    missed_ = missed_ * between(judged_.T_before_after, T_before_after);  // odometry may bring it yet, matched or not
+    const bool frozen = is_matched && (distance(missed_) > OdometryTuning::kFrozenError ||
+                                       std::abs(missed_.theta) > OdometryTuning::kFrozenErrorTheta);
     if (frozen && !is_frozen_) add_fault(OdometryFault::Kind::kFreeze, missed_);
     is_frozen_ = is_frozen_ || frozen;
   } else {
-    if (is_matched && !is_frozen_) {
+    if (is_matched && is_still(missed_)) {  // else it catches up
       add_fault(judged_doubted_ ? OdometryFault::Kind::kJump : OdometryFault::Kind::kReversed,
                 between(judged_.T_before_after, T_before_after));
     }

@@ -73,7 +73,7 @@ class OdometryMonitor {
   bool knows_backwards_ = false;  // odometry has said that the base went backwards
   bool judged_doubted_ = false;
   std::optional<Motion> believed_;  // the last motion
-  Pose2 missed_;                    // what was accepted while odometry was frozen
+  Pose2 missed_;                    // what the base did while odometry stood still
   bool is_frozen_ = false;
   double stood_ = 0.0;  // [s] for which odometry has said exactly nothing
   std::uint64_t fault_count_ = 0;

@@ -18,6 +18,10 @@ PointCloud Laser::take(const LaserScan& scan, const Pose2& T_odom_base, const Sw
   const Sweep sweep = deskews_ ? sweep_of_sensor(sweep_of_base, T_base_sensor_) : Sweep{};
   PointCloud deskewed = deskew(cloud, in_order(sweep, tests_order_ ? order_.order() : given_order_));
   // From here on nothing throws.
+  if (repeated_.add(scan.ranges, count_returns(deskewed), T_odom_base)) {
+    deskewed.points.clear();
+    return deskewed;
+  }
   if (finds_body_) {
     body_.add(scan, T_odom_base);
     body_.remove_from(deskewed);
@@ -36,7 +40,8 @@ bool Laser::remove_body_from(PointCloud& cloud) const {
 }
 
 LaserFindings Laser::findings() const {
-  return {tests_order_ ? order_.order() : given_order_, order_.is_decided(), order_.evidence(), body_.sectors()};
+  return {tests_order_ ? order_.order() : given_order_, order_.is_decided(), order_.evidence(), body_.sectors(),
+          repeated_.count()};
 }
 
 }  // namespace oort

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Oort authors
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "oort/geometry/point_cloud.hpp"
@@ -9,6 +10,7 @@
 #include "oort/parameters/parameters.hpp"
 #include "oort/sensor/beam_order.hpp"
 #include "oort/sensor/body_sectors.hpp"
+#include "oort/sensor/repeated_readings.hpp"
 
 namespace oort {
 
@@ -18,6 +20,7 @@ struct LaserFindings {
   bool beam_order_is_decided = false;
   BeamOrderTest::Evidence beam_order_evidence;
   std::vector<BodySector> body;
+  std::uint64_t repeated_scans = 0;  ///< that were the scan before once more
 };
 
 /// A laser on the robot: makes clouds of its scans, with what has been learned of the laser from them.
@@ -27,7 +30,8 @@ class Laser {
 
   const Pose2& T_base_sensor() const { return T_base_sensor_; }
 
-  /// The scan in the sensor frame at its stamp: deskewed, and without the robot's own body. Throws InputError if the
+  /// The scan in the sensor frame at its stamp: deskewed, and without the robot's own body; without a point if its
+  /// readings are those of the scan before, though the base has moved. Throws InputError if the
   /// scan's limits or the sweep are not finite; nothing changes then.
   PointCloud take(const LaserScan& scan, const Pose2& T_odom_base, const Sweep& sweep_of_base);
 
@@ -45,6 +49,7 @@ class Laser {
   bool finds_body_;
   BeamOrderTest order_;
   BodyDetector body_;
+  RepeatedReadings repeated_;
 };
 
 }  // namespace oort

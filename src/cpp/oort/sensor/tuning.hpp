@@ -35,6 +35,10 @@ struct SensorTuning {
   /// [s] between a scan of the main laser and one of another that joins it; lasers have 5 to 40 Hz.
   static constexpr double kJoinedAge = 0.25;
 
+  // Readings of the scan before, once more.
+  static constexpr std::size_t kRepeatedReturns = 20;  ///< at least
+  static constexpr double kRepeatedMotion = 0.005;     ///< [m, rad] by odometry since they came first: it creeps less
+
   // The robot's own body.
   static constexpr int kBodyBins = 720;            ///< of half a degree
   static constexpr double kMaxBodyRange = 1.0;     ///< [m]; a chassis around a laser is nearer

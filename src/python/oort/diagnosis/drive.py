@@ -15,6 +15,7 @@ from oort.diagnosis.trouble import Trouble
 _UNCERTAIN = 0.5  # share of scans
 _FEW = 50  # scans, of which no share says much
 _SCALE = 0.08  # of odometry; what is learned of it ends at 0.1
+_REPEATED = 3  # scans that are worth telling
 _GAP = 2.0  # [s] and
 _GAP_FACTOR = 10.0  # times the usual interval
 _GAP_TRAVEL, _GAP_TURN = 0.5, 1.0  # [m], [rad] meanwhile; a robot that stands may be silent
@@ -98,6 +99,16 @@ def _laser(laser: Mapping[str, Any]) -> list[Trouble]:
                 "correct the driver: of a clockwise laser whose beams are turned round, time_increment is negative and "
                 "the stamp that of the last beam",
                 {"tests": order["tests"], "cost_as_stamped": costs["stamped"], "cost": costs[order["order"]]},
+            )
+        )
+    if laser["repeated_scans"] >= _REPEATED:
+        found.append(
+            Trouble(
+                "scan_repeated",
+                f"the laser's readings are those of the scan before though the robot moves, "
+                f"{_times(laser['repeated_scans'])}; left out",
+                "look for a driver or a bridge that sends its last scan again when no new one comes",
+                {"times": laser["repeated_scans"]},
             )
         )
     if laser["body"]:
