@@ -3,6 +3,7 @@
 """Finding and following a robot on the map of another drive through the same simulated home."""
 
 import json
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from oort.offline.follow import follow
 from oort.poses import Array, between, compose
 from oort.recording import Recording, Scan, open_recording
 from oort.simulate import Drive, SimulationConfig, simulate_drive
+from oort.simulate.drive import first_seconds
 from oort.simulate.writers import write_carmen
 
 
@@ -161,6 +163,17 @@ def test_wrong_calls(home: Home, options: list[str], told: str, capsys: pytest.C
         main([home.base, str(home.folder / "later.clf"), *options])
     assert caught.value.code == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_robot_that_is_not_found_is_told(home: Home, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    elsewhere = first_seconds(simulate_drive(40, SimulationConfig(minutes=0.5)), 8.0)
+    write_carmen(elsewhere, tmp_path / "other.clf")
+    assert main([home.base, str(tmp_path / "other.clf"), "--out", str(tmp_path)]) == 3
+    told = capsys.readouterr()
+    assert "the robot was not found on" in told.err and "--start pose" in told.err
+    assert re.search("^deviation  +-$", told.out, re.MULTILINE)
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["scans_with_pose"] == 0 and report["position_deviation"] == {"median": None, "max": None}
 
 
 def test_missing_files(home: Home, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,6 +4,9 @@
 
 import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import PurePath
 
 _COMMAND = "oort"
@@ -19,6 +22,21 @@ def take_interrupts() -> None:
     """Makes Ctrl-C a KeyboardInterrupt again, once there is somebody to catch it."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL and _runs_a_tool():
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Lets Ctrl-C end a tool at once while the engine computes for seconds and nothing is written."""
+    usual = signal.getsignal(signal.SIGINT)
+    alone = threading.current_thread() is threading.main_thread() and _runs_a_tool()
+    if not alone or usual is not signal.default_int_handler:
+        yield
+        return
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, usual)
 
 
 def _runs_a_tool() -> bool:

@@ -122,7 +122,10 @@ def start_pose(map_: Map, parameters: Parameters, start: str) -> Pose:
     docks = [id for name_space, id, *_ in map_.locations if name_space == "dock"]
     pose = map_.locate("dock", docks[0]) if docks else None
     if pose is None:
-        raise InputError("the map has no dock: create the place dock/dock while mapping, or start another way")
+        raise InputError(
+            "the map has no dock: name it while mapping (with oort replay --events FILE, in a robot graph_loc/create), "
+            "or start another way"
+        )
     return pose
 
 

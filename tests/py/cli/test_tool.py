@@ -88,7 +88,7 @@ def test_a_folder_that_is_a_file(drive: Drive, tmp_path: Path, capsys: pytest.Ca
     write_carmen(drive, tmp_path / "home.clf")
     (tmp_path / "out").write_text("")
     assert main(["replay", str(tmp_path / "home.clf"), "--out", str(tmp_path / "out")]) == 2
-    assert "out: File exists; it is no folder, so choose another path" in capsys.readouterr().err
+    assert "out is no folder; choose another path" in capsys.readouterr().err
 
 
 def test_a_warning_is_a_note(capsys: pytest.CaptureFixture[str]) -> None:

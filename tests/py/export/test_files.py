@@ -3,12 +3,13 @@
 """Atomic writing, and decimals."""
 
 import os
+import tempfile
 from pathlib import Path
 
 import pytest
 
 from oort.errors import InputError, OortError
-from oort.export.files import decimal, write_atomically
+from oort.export.files import decimal, make_folder, write_atomically
 from oort.inputs import floats
 
 
@@ -18,6 +19,24 @@ def test_a_write_replaces_the_file_and_leaves_nothing_behind(tmp_path: Path) -> 
     write_atomically(path, b"new")
     assert path.read_bytes() == b"new"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_is_made_or_told_of_before_the_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    make_folder(tmp_path / "new" / "maps")
+    assert list((tmp_path / "new" / "maps").iterdir()) == []
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OortError, match="file is no folder; choose another path"):
+        make_folder(tmp_path / "file")
+    for bad in ("file/maps", "a\0b"):
+        with pytest.raises(OortError, match=r"nothing can be written into .*; check who may write there"):
+            make_folder(tmp_path / bad)
+
+    def refused(**_: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(tempfile, "TemporaryFile", refused)  # who runs the tests may write everywhere
+    with pytest.raises(OortError, match=r"into .*maps: Permission denied"):
+        make_folder(tmp_path / "new" / "maps")
 
 
 def test_a_failed_write_keeps_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,7 +21,7 @@ from oort.node.markers import graph_markers
 from oort.node.messages import yaw
 
 STAMP = genpy.Time(12, 34)
-LINES = ("chain", "chain by odometry", "closures", "closures contradicted")
+LINES = ("chain", "chain by odometry", "closures", "closures undone")
 
 
 def graph(
@@ -73,11 +73,11 @@ def test_every_link_is_shown_in_its_kind() -> None:
     assert segments(kinds["chain"]) == [(0, 1), (2, 3)]
     assert segments(kinds["chain by odometry"]) == [(1, 2), (3, 4)]
     assert segments(kinds["closures"]) == [(4, 0), (3, 0)]
-    assert segments(kinds["closures contradicted"]) == [(4, 1), (2, 0)]
+    assert segments(kinds["closures undone"]) == [(4, 1), (2, 0)]
     (nodes,) = kinds["nodes"]
     assert [(point.x, point.y, point.z) for point in nodes.points] == [(k, 10.0 + k, 0.0) for k in range(5)]
     assert nodes.type == Marker.SPHERE_LIST
-    green, red = kinds["closures"][0].color, kinds["closures contradicted"][0].color
+    green, red = kinds["closures"][0].color, kinds["closures undone"][0].color
     assert green.g > 2 * max(green.r, green.b)
     assert red.r > 2 * max(red.g, red.b)
 

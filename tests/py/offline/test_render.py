@@ -50,7 +50,7 @@ def test_what_cannot_be_drawn(saved: Path, tmp_path: Path, capsys: pytest.Captur
     for map_, prefix, message in (
         (tmp_path / "none", tmp_path / "flat", "none"),
         (empty, tmp_path / "flat", "there is nothing to draw"),
-        (saved, tmp_path / "no/flat", "flat_map.png cannot be written: No such file or directory"),
+        (saved, tmp_path / "empty.map_capnp/flat", "empty.map_capnp is no folder"),
     ):
         assert main(["render", str(map_), str(prefix)]) == 2
         error = capsys.readouterr().err

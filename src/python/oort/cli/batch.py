@@ -36,7 +36,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _tell(outcome: Outcome, done: int, total: int, left: str) -> None:
     what = outcome.error or ("was done before" if outcome.kept else f"{outcome.figures['nodes']} nodes")
-    print(f"[{done}/{total}] {Path(outcome.folder).name}: {what}{left}", flush=True)
+    print(f"[{done}/{total}{left}] {Path(outcome.folder).name}: {what}", flush=True)
 
 
 def _run(args: argparse.Namespace) -> None:
@@ -50,8 +50,8 @@ def _run(args: argparse.Namespace) -> None:
     for outcome in run_batch(jobs, args.jobs, args.cluster):
         outcomes.append(outcome)
         if not args.json:
-            kept = sum(each.kept for each in outcomes)  # these took no time
-            _tell(outcome, len(outcomes), len(jobs), time_left(started, len(outcomes) - kept, len(jobs) - kept))
+            quick = sum(each.kept or each.error is not None for each in outcomes)  # these took no time
+            _tell(outcome, len(outcomes), len(jobs), time_left(started, len(outcomes) - quick, len(jobs) - quick))
     write_table(outcomes, out)
     rows = [{"name": Path(o.folder).name, **asdict(o)} for o in sorted(outcomes, key=lambda o: o.recording)]
     write_atomically(out / "index.html", make_index_page(rows))

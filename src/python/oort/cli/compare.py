@@ -4,9 +4,12 @@
 
 import argparse
 from collections.abc import Sequence
+from pathlib import Path
 
 from oort.cli.tool import Parser, add_json_argument, print_result, run_tool
 from oort.offline.compare import compare
+
+_PAGE = "compare.html"
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -17,14 +20,19 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("a", metavar="A", help="the folder of a replay, or its report.html")
     parser.add_argument("b", metavar="B", help="another one")
-    parser.add_argument("--out", metavar="FILE", default="compare.html", help="the page (default: compare.html)")
+    parser.add_argument("--out", metavar="FILE", default=_PAGE, help=f"the page (default: {_PAGE})")
     add_json_argument(parser)
     return parser
 
 
 def _run(args: argparse.Namespace) -> None:
-    comparison = compare(args.a, args.b, args.out)
-    print_result(args, comparison, f"open {args.out}")
+    out = Path(args.out)
+    if out.is_dir():
+        out /= _PAGE
+    elif out.suffix not in (".html", ".htm"):  # a browser takes it for text
+        out = out.with_name(f"{out.name}.html")
+    comparison = compare(args.a, args.b, str(out))
+    print_result(args, comparison, f"open {out}")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from oort.cli.recording_arguments import add_recording_arguments, recording_of
 from oort.cli.tool import (
+    UNCERTAIN,
     Parser,
     add_checksum_argument,
     add_json_argument,
@@ -17,6 +18,7 @@ from oort.cli.tool import (
     print_result,
     run_tool,
 )
+from oort.export.files import make_folder
 from oort.image_maps import open_reference_map
 from oort.localization import STARTS, start_pose
 from oort.offline.follow import follow
@@ -45,7 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _run(args: argparse.Namespace) -> None:
+def _run(args: argparse.Namespace) -> int:
     parameters = read_parameters(args.params)
     map_ = open_reference_map(args.map, ignore_checksum=args.ignore_checksum)
     recording = recording_of(args, parameters)
@@ -55,16 +57,23 @@ def _run(args: argparse.Namespace) -> None:
     elif args.start != "global":
         start = start_pose(map_, parameters, args.start)
     folder = Path(args.out) if args.out else Path("oort-out") / f"{recording.name}-localized"
-    folder.mkdir(parents=True, exist_ok=True)  # what hinders that is told now rather than after the drive
+    make_folder(folder)
     drive = follow(recording, scans_with_progress(recording, args.quiet or args.json), map_, parameters, start)
     report = write_localization(drive, map_, args.map, parameters, folder)
-    if args.quiet and not args.json:
-        return
-    if not args.json:
+    found = bool(report["scans_with_pose"])
+    if not args.quiet and not args.json:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
-    told = f"{format_localization(report)}\nwrote {folder}: trajectory.tum map.png report.json"
-    print_result(args, report, told)
+    if args.json or not args.quiet:
+        told = f"{format_localization(report)}\nwrote {folder}: trajectory.tum map.png report.json"
+        print_result(args, report, told)
+    if not found:
+        print(
+            f"oort localize: {recording.name}: the robot was not found on {args.map}; if the map is of this place, say "
+            "where the drive begins with --start pose --pose X Y THETA",
+            file=sys.stderr,
+        )
+    return 0 if found else UNCERTAIN
 
 
 def main(argv: Sequence[str] | None = None) -> int:

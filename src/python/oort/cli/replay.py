@@ -24,6 +24,7 @@ from oort.cli.tool import (
 from oort.errors import InputError, OortError
 from oort.evaluation.truth import Truth
 from oort.events import read_events
+from oort.export.files import make_folder
 from oort.localization import find_start
 from oort.offline.replay import ReplayOptions, replay
 from oort.offline.results import write_results
@@ -59,13 +60,9 @@ def replay_to_folder(
             f"{options.resume[0]}: resuming would overwrite this map; choose another place with --map or --out, or "
             "work in another folder"
         )
-    map_folder = Path(normalise_map_path(map_path)).parent
-    if base and not map_folder.is_dir() and map_folder != folder.absolute():
-        raise InputError(
-            f"{map_folder} is no folder, so the map cannot be saved there; make it, or choose another place"
-        )
-    folder.mkdir(parents=True, exist_ok=True)
     check_name(map_path)
+    make_folder(folder)
+    make_folder(Path(normalise_map_path(map_path)).parent)
     if not options.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
@@ -74,7 +71,8 @@ def replay_to_folder(
     results = write_results(drive, folder, map_path, truth)
     if not options.quiet:
         for note in results.report["notes"][len(recording.notes) :]:
-            print(f"note: {note}", file=sys.stderr)
+            if note not in results.failed:  # told last
+                print(f"note: {note}", file=sys.stderr)
         print(format_table(results.report))
         if troubles := format_troubles(results.report):
             print(troubles)
@@ -86,7 +84,9 @@ def replay_to_folder(
     if "report.html" in results.written and not options.quiet:
         print(f"open {folder / 'report.html'}")
     if results.failed:
-        raise OortError(f"{'; '.join(results.failed)}. Written all the same: {', '.join(results.written) or 'nothing'}")
+        raise OortError(
+            f"{'; '.join(results.failed)} (written all the same: {', '.join(results.written) or 'nothing'})"
+        )
     return [trouble["code"] for trouble in results.report["troubles"]]
 
 

@@ -73,15 +73,19 @@ def _run(args: argparse.Namespace) -> None:
     elif args.dock or args.resolution is not None or args.assets is not None:
         raise InputError("--dock, --resolution and --assets are of a floor plan; say which with --plan")
     name = args.name or f"{args.scene if plan is None else args.plan.stem}_{args.seed}"
+    no_log = "no CARMEN log: it could not tell when each beam of a sweep was measured"
     try:
-        drive = simulate_drive(args.seed, _config(args), plan)
+        config = _config(args)
+        if config.sensor.sweep_seconds and list(args.format) == ["carmen"]:
+            raise InputError(f"{no_log}; choose another --format, or a sensor without a sweep")
+        drive = simulate_drive(args.seed, config, plan)
     except (ValueError, RuntimeError) as error:  # of numbers that cannot be; of a plan that the driver loses its way in
         raise InputError(str(error)) from None
     paths = [str(path) for path in write_drive(drive, args.out, name, args.picture, args.format)]
     notes = [] if plan is None else [f"note: {note}" for note in plan.notes]
     lines = [_summary(drive), *notes, *paths]
     if drive.config.sensor.sweep_seconds and "carmen" in args.format:
-        lines.append("no CARMEN log: it could not tell when each beam of a sweep was measured")
+        lines.append(no_log)
     print_result(args, _figures(drive) | {"written": paths}, "\n".join(lines))
 
 

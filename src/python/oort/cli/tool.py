@@ -3,6 +3,7 @@
 """What the command line tools have in common: arguments that several take, and how each ends."""
 
 import argparse
+import errno
 import io
 import json
 import math
@@ -12,18 +13,19 @@ import signal
 import sys
 import warnings
 from collections.abc import Callable, Generator, Sequence
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TextIO
 
 from oort.errors import OortError
 from oort.export.files import decimal
 from oort.interrupts import take_interrupts
 
 UNCERTAIN = 3
-"""The exit status of ``--strict`` where most of a drive is uncertain."""
+"""The exit status of ``--strict`` where most of a drive is uncertain, and of a drive that was never found on a map."""
 
 FAULT = 1
 """The exit status after a fault of Oort's own."""
 
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 _LONGEST = 2000  # characters of a message
 _DEBUG = "OORT_DEBUG"
 """The environment's variable that lets faults of Oort's own through with their traceback."""
@@ -52,18 +54,31 @@ def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int
     usual, warnings.formatwarning = warnings.formatwarning, _note
     try:
         take_interrupts()
-        status = run()
-        sys.stdout.flush()
+        return _run_told(name, run, reading)
     except BrokenPipeError:  # who reads has seen enough, as with head
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard(sys.stdout, sys.stderr)
         return 128 + signal.SIGPIPE
-    except (OortError, OSError, MemoryError) as error:
-        # Errors begin with the method that was called, which may be what the tool is called.
-        print(f"{name}: {_told(error, reading).removeprefix(f'{name.split()[-1]}: ')}", file=sys.stderr)
-        return 2
     except KeyboardInterrupt:
         print(f"{name}: interrupted", file=sys.stderr)
         return 128 + signal.SIGINT
+    finally:
+        warnings.formatwarning = usual
+
+
+def _run_told(name: str, run: Callable[[], int | None], reading: str) -> int:
+    """Runs a tool and tells its errors, all but that it was interrupted and that nobody reads."""
+    try:
+        status = run()
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except (OortError, OSError, MemoryError) as error:
+        if isinstance(error, OSError) and not error.filename and error.errno in _FULL:  # files are written with names
+            _discard(sys.stdout)
+            reading = "standard output"
+        # Errors begin with the method that was called, which may be what the tool is called.
+        print(f"{name}: {_told(error, reading).removeprefix(f'{name.split()[-1]}: ')}", file=sys.stderr)
+        return 2
     except Exception as error:
         if os.environ.get(_DEBUG):
             raise
@@ -72,9 +87,13 @@ def run_tool(name: str, run: Callable[[], int | None], reading: str = "") -> int
             f"{name}: this is a fault of Oort's ({why}); please report it, with what {_DEBUG}=1 shows", file=sys.stderr
         )
         return FAULT
-    finally:
-        warnings.formatwarning = usual
     return status or 0
+
+
+def _discard(*streams: TextIO) -> None:
+    """Lets go what was printed to streams, so that Python does not complain of it at the end."""
+    for stream in streams:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _note(message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None) -> str:

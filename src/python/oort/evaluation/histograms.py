@@ -23,7 +23,7 @@ _TITLES = {
     ("chi2", "laser"): "chi2 of matched edges",
     ("chi2", "odometry"): "chi2 of odometry edges",
     ("chi2", "closures"): "chi2 of closures that are on",
-    ("chi2", "switched_off"): "chi2 of closures that are off",
+    ("chi2", "switched_off"): "chi2 of closures undone",
 }
 
 

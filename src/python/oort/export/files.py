@@ -13,6 +13,22 @@ import numpy as np
 from oort.errors import InputError, OortError
 
 
+def make_folder(path: Path) -> None:
+    """Makes the folder that results go into, and tries whether files can be: before the work rather than after it.
+
+    Raises OortError if not.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path):
+            pass
+    except FileExistsError:
+        raise OortError(f"{path} is no folder; choose another path") from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        why = error.strerror if isinstance(error, OSError) else error
+        raise OortError(f"nothing can be written into {path}: {why}; check who may write there") from None
+
+
 def write_atomically(path: Path, data: bytes) -> None:
     """Writes a file so that at every instant it is the old one or the new one. Raises OortError if it cannot.
 

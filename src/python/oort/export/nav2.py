@@ -31,7 +31,9 @@ def write_docks(path: Path, docks: Sequence[tuple[str, Pose]]) -> None:
     Raises InputError if there is none, OortError if the file cannot be written.
     """
     if not docks:
-        raise InputError("the map has no dock: name one with graph_loc/create in the namespace 'dock'")
+        raise InputError(
+            "the map has no dock: name it while mapping (with oort replay --events FILE, in a robot graph_loc/create)"
+        )
     entries = {
         name: {"type": _DOCK, "frame": _FRAME, "pose": [round(value, 6) for value in pose]} for name, pose in docks
     }

@@ -59,7 +59,9 @@ def read_tum(path: str | os.PathLike[str]) -> Trajectory:
     for where, fields, (_, x, y, _, qx, qy, qz, qw) in read_rows(path, "time x y z qx qy qz qw"):
         norm = qx * qx + qy * qy + qz * qz + qw * qw
         if norm < 1e-6:
-            raise InputError(f"{where}: the quaternion has no length, so it is no rotation")
+            raise InputError(
+                f"{where}: the quaternion has no length, so it is no rotation; a trajectory has time x y z qx qy qz qw"
+            )
         stamps.append(fields[0])
         poses.append((x, y, np.arctan2(2.0 * (qw * qz + qx * qy), norm - 2.0 * (qy * qy + qz * qz))))
     if not poses:

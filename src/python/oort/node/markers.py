@@ -19,7 +19,7 @@ from oort.recording import Pose
 # Each kind lies a little higher than the one before it, so that what overlaps does not flicker.
 _CHAIN = ("chain", (0.25, 0.45, 0.9, 1.0), 0.01)
 _BY_ODOMETRY = ("chain by odometry", (1.0, 0.6, 0.0, 1.0), 0.02)
-_CONTRADICTED = ("closures contradicted", (0.9, 0.1, 0.1, 1.0), 0.03)
+_UNDONE = ("closures undone", (0.9, 0.1, 0.1, 1.0), 0.03)
 _CLOSURES = ("closures", (0.1, 0.75, 0.2, 1.0), 0.04)
 _NODES = ("nodes", (0.1, 0.2, 0.55, 1.0), 0.05)
 _PLACES = ("places", (0.75, 0.1, 0.75, 1.0), 0.06)
@@ -44,7 +44,7 @@ def graph_markers(map_: Map, places: Sequence[tuple[str, str, Pose]], frame: str
     markers = [
         _lines(_CHAIN, points, edges["i"][~by_odometry], edges["j"][~by_odometry]),
         _lines(_BY_ODOMETRY, points, edges["i"][by_odometry], edges["j"][by_odometry]),
-        _lines(_CONTRADICTED, points, closures["i"][~believed], closures["j"][~believed]),
+        _lines(_UNDONE, points, closures["i"][~believed], closures["j"][~believed]),
         _lines(_CLOSURES, points, closures["i"][believed], closures["j"][believed]),
         _marker(_NODES, Marker.SPHERE_LIST, (_NODE_SIZE,) * 3, points=points),
     ]

@@ -5,7 +5,8 @@
 from pathlib import Path
 from typing import Any
 
-from oort.export.files import write_atomically
+from oort.errors import InputError
+from oort.export.files import make_folder, write_atomically
 from oort.report.arrays import unpack
 from oort.report.compare_page import compare_page_data, make_compare_page
 from oort.report.page import read_page_data
@@ -19,7 +20,8 @@ def compare(a: str, b: str, out: str) -> dict[str, Any]:
     ``a`` and ``b`` are folders of replays or their report.html. Raises InputError for anything else, OortError if the
     page cannot be written.
     """
-    paths = [path / _REPORT if path.is_dir() else path for path in (Path(a), Path(b))]
+    paths = [_report_of(Path(path)) for path in (a, b)]
+    make_folder(Path(out).parent)
     data_a, data_b = (read_page_data(path) for path in paths)
     names = [_name(path) for path in paths]
     if names[0] == names[1]:
@@ -34,6 +36,14 @@ def compare(a: str, b: str, out: str) -> dict[str, Any]:
         "apart": {"mean": float(apart.mean()), "max": float(apart.max())} if len(apart) else None,
         "written": [out],
     }
+
+
+def _report_of(path: Path) -> Path:
+    if path.is_dir():
+        return path / _REPORT
+    if not path.exists() and (path.parent / _REPORT).is_file():
+        raise InputError(f"{path} is no replay's folder, but {path.parent} is one: give that")
+    return path
 
 
 def _name(path: Path) -> str:

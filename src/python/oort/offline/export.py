@@ -13,6 +13,7 @@ from oort._core import Map, OccupancyGrid, Parameters
 from oort.areas import Area, areas_of, is_area
 from oort.errors import InputError, OortError
 from oort.export.drawing import FloorPlan, write_dxf, write_svg
+from oort.export.files import make_folder
 from oort.export.g2o import write_g2o
 from oort.export.geojson import feature, write_geojson
 from oort.export.kitti import write_kitti
@@ -54,6 +55,8 @@ def export(map_: Map, parameters: Parameters, format_: str, out: str) -> list[st
     """
     if not len(map_):
         raise InputError("the map is empty: there is nothing to export")
+    if Path(out).is_file() or not Path(out).exists():  # a device has its folder
+        make_folder(Path(out).parent)
     return _WRITERS[format_](map_, parameters, Path(out)) or [out]
 
 

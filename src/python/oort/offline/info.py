@@ -52,7 +52,7 @@ def map_info(path: str, parameters: Parameters, *, ignore_checksum: bool = False
         "chains": _chains(map_),
         "seconds": [float(map_.cloud_times.min()), float(map_.cloud_times.max())] if len(map_) else [],
         "closures": int((loops >= SWITCH_ON).sum()),
-        "closures_off": int((loops < SWITCH_ON).sum()),
+        "closures_undone": int((loops < SWITCH_ON).sum()),
         **_area(map_, parameters),
         "places": [f"{space}/{id_}" for space, id_, _ in places if not is_area(space)],
         "areas": [area.name_space for area in areas_of(places)],
@@ -96,7 +96,7 @@ def format_info(info: dict[str, Any]) -> str:
     lines = []
     for name, value in info.items():
         unit = _UNITS.get(name) if value not in (None, []) else None
-        lines.append(f"{name.replace('_', ' '):<{width}}  {_text(value)}{f' {unit}' if unit else ''}")
+        lines.append(f"{name.replace('_', ' '):<{width}}  {_text(value) or '-'}{f' {unit}' if unit else ''}")
     return "\n".join(lines)
 
 

@@ -35,7 +35,7 @@ def write_localization(
 
 
 def _report(drive: LocalizedDrive, map_path: str, parameters: Parameters) -> dict[str, Any]:
-    deviations = np.array(drive.deviations or [0.0])
+    deviations = np.array(drive.deviations)
     return {
         "report_version": REPORT_VERSION,
         "input": drive.recording.name,
@@ -48,8 +48,8 @@ def _report(drive: LocalizedDrive, map_path: str, parameters: Parameters) -> dic
         "states": {state: n for state in LocalizationState if (n := _count(drive, state))},
         "stretches": [{"state": s.state, "begin": s.begin, "end": s.end, "scans": s.scans} for s in drive.stretches],
         "position_deviation": {
-            "median": round(float(np.median(deviations)), 4),
-            "max": round(float(deviations.max()), 4),
+            "median": round(float(np.median(deviations)), 4) if len(deviations) else None,
+            "max": round(float(deviations.max()), 4) if len(deviations) else None,
         },
         "timings": drive.watch.figures(drive.recorded_seconds),
         "parameters": parameters.to_dict(),
@@ -67,11 +67,15 @@ def format_localization(report: dict[str, Any]) -> str:
         ("scans", f"{report['scans']} ({report['matched']} matched{_reasons(report['match_rejections'])})"),
         ("states", ", ".join(f"{state} {n}" for state, n in report["states"].items())),
         ("searches", f"{report['searches']}{_reasons(report['search_rejections'])}, {report['jumps']} jumps"),
-        ("deviation", "median {median:.3f} m, max {max:.3f} m".format(**report["position_deviation"])),
+        ("deviation", _deviation(**report["position_deviation"])),
         ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),
     ]
     width = max(len(name) for name, _ in rows)
     return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _deviation(median: float | None, max: float | None) -> str:
+    return "-" if median is None else f"median {median:.3f} m, max {max:.3f} m"
 
 
 def _reasons(reasons: dict[str, int]) -> str:

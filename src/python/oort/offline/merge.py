@@ -3,6 +3,7 @@
 """Joins two saved maps of the same home into one."""
 
 from collections.abc import Generator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ from oort._core import (
 from oort.areas import areas_of_map, is_area
 from oort.errors import InputError
 from oort.export import write_picture
+from oort.export.files import make_folder
+from oort.interrupts import interruptible
 from oort.offline.drawing import draw_map
 from oort.poses import compose
 from oort.recording import Pose
@@ -58,9 +61,11 @@ def merge(
     yield f"{first}: {len(a)} nodes"
     yield f"{second}: {len(b)} nodes"
     yield "looking for where the second map lies on the first, and for closures across"
-    merged = merge_maps(a, b, parameters, at)
-    map_ = merged.map
-    pruned = _pruned(map_, int(parameters.get("keep_views")))
+    make_folder(Path(paths[2]).parent)
+    with interruptible():
+        merged = merge_maps(a, b, parameters, at)
+        map_ = merged.map
+        pruned = _pruned(map_, int(parameters.get("keep_views")))
     save_map(target, pruned)
     yield from _told(merged)
     if len(pruned) < len(map_):

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a saved map in the newest format, or as the original Oort did."""
 
+from pathlib import Path
 from typing import Any
 
 from oort._core import FORMAT_VERSION, normalise_map_path, read_map_format, save_map
 from oort.errors import InputError
+from oort.export.files import make_folder
 from oort.saved_maps import open_map
 
 
@@ -20,6 +22,7 @@ def migrate(
         raise InputError(f"{target}: the new map would replace the old one; choose another place")
     map_ = open_map(source, ignore_checksum=ignore_checksum)
     old = read_map_format(source, ignore_checksum=True)
+    make_folder(Path(normalise_map_path(target)).parent)
     save_map(target, map_, as_original=to_original)
     new = 0 if to_original else FORMAT_VERSION
     return {

@@ -10,6 +10,8 @@ from tqdm import tqdm
 
 from oort.recording import Recording, Scan
 
+_SILENCE = 10.0  # [s] without a line, at most
+
 
 def time_left(started: float, done: int, total: int) -> str:
     """``, 12 s left``, by what was done since ``started`` (time.monotonic()); empty once all is done or nothing is."""
@@ -31,9 +33,10 @@ def with_progress(scans: Iterator[Scan], recording: Recording, quiet: bool) -> I
         yield from tqdm(scans, total=recording.num_scans, desc=recording.name, unit=" scans")
     else:
         step = max(1, recording.num_scans // 10)
-        started = time.monotonic()
+        told = started = time.monotonic()
         for number, scan in enumerate(scans, start=1):
             yield scan
-            if number % step == 0:
+            if number % step == 0 or time.monotonic() > told + _SILENCE:
+                told = time.monotonic()
                 left = time_left(started, number, recording.num_scans)
                 print(f"{recording.name}: {number} of {recording.num_scans} scans{left}", file=sys.stderr)

@@ -3,12 +3,14 @@
 """Draws a saved map as pictures for map_server."""
 
 from collections.abc import Generator
+from pathlib import Path
 from typing import Any
 
 from oort._core import Parameters
 from oort.diagnosis import loose_parts
 from oort.errors import InputError
 from oort.export import write_map_server
+from oort.export.files import make_folder
 from oort.offline.drawing import draw_map
 from oort.saved_maps import open_map
 
@@ -23,6 +25,7 @@ def render(
     Raises MapFileError, InputError if there is nothing to draw, and OortError if a file cannot be written.
     """
     map_ = open_map(map_path, ignore_checksum=ignore_checksum)
+    make_folder(Path(prefix).parent)
     grids, notes = draw_map(map_, parameters)
     notes = [*notes, *(str(trouble) for trouble in loose_parts(map_))]
     yield from notes

@@ -170,6 +170,8 @@ def _no_bag(path: Path, has_metadata: bool) -> str:
     bags = sorted((file.name for file in path.glob("*.bag*")), key=_natural)
     if bags:
         return f"{path} is a folder of ROS 1 bags: give the bag, or all the parts of one that was split: {bags[:9]}"
+    if maps := sorted(file.stem for file in path.glob("*.map_capnp")):
+        return f"{path} is a folder with a saved map, {path / maps[0]}, not a recording"
     if has_metadata:
         return f"{path} holds a metadata.yaml, but no .mcap or .db3 file: the files that it lists are gone"
     return f"{path} is a directory without metadata.yaml and without a .mcap or .db3 file, so not a ROS 2 bag"

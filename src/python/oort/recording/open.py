@@ -26,6 +26,7 @@ ACCEPTED = (
 )
 """What `open_recording` reads, as a phrase for messages."""
 
+_MAP = ".map_capnp"  # the ending of a saved map
 _SUFFIXES = (".clf", ".carmen", ".log", ".txt", ".bag", ".mcap", ".db3")
 
 
@@ -130,6 +131,10 @@ def _check_readable(path: Path) -> None:
         with path.open("rb") as stream:
             head = stream.read(4096)
     except OSError as error:
+        if isinstance(error, FileNotFoundError) and path.with_name(f"{path.name}{_MAP}").is_file():
+            raise InputError(
+                f"{path} is a saved map, not a recording; to go on with it, give a recording and --resume {path}"
+            ) from None
         raise InputError(f"{path} cannot be read: {error.strerror}; check the path") from None
     if not head:
         raise InputError(f"{path} is empty; copy it again, or record it again")

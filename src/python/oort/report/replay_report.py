@@ -66,7 +66,7 @@ def table_rows(report: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("dock closures", _closures(report["docks"])),
         (
             "solved",
-            "{kept} closures kept, {contradicted} contradicted, {came_back} came back".format(**report["solved"]),
+            "{kept} closures kept, {contradicted} undone, {came_back} came back".format(**report["solved"]),
         ),
         ("map", f"{report['map']['width']} x {report['map']['height']} cells of {report['map']['resolution']} m"),
         ("ms per scan", "P50 {p50:.2f}  P95 {p95:.2f}  P99 {p99:.2f}  max {max:.1f}".format(**per_scan)),

@@ -105,20 +105,21 @@ function showApart({ time, distance }) {
   const most = distance.reduce((a, b) => Math.max(a, b), 0);
   document.querySelector("#apart-text").textContent = `Mean ${mean.toFixed(3)} m, at most ${most.toFixed(3)} m; at the same times, maps not aligned.`;
   const place = document.querySelector("#apart");
-  const options = { width: place.clientWidth, height: 160, scales: { x: { time: false } }, axes: [{ values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { size: 56 }], series: [{ label: "time", value: (_, v) => (v === null ? "–" : seconds(v)) }, { label: "apart", stroke: "#0b6bcb", value: (_, v) => (v === null || v === undefined ? "–" : `${v.toFixed(3)} m`) }] };
+  const options = { width: place.clientWidth, height: 160, scales: { x: { time: false } }, axes: [{ values: (_, ticks) => ticks.map((tick) => `${tick} s`) }, { size: 64, values: (_, ticks) => ticks.map((tick) => `${tick} m`) }], series: [{ label: "time", value: (_, v) => (v === null ? "–" : seconds(v)) }, { label: "apart", stroke: "#0b6bcb", value: (_, v) => (v === null || v === undefined ? "–" : `${v.toFixed(3)} m`) }] };
   new uPlot(options, [Array.from(time), Array.from(distance)], place);
 }
 
 async function main() {
   const data = await Data.load("oort-data");
   document.querySelector("#name").textContent = `${data.names[0]} and ${data.names[1]}`;
-  document.querySelector("#kind").textContent = data.runs.map((run) => `${run.name}: ${run.kind}, ${run.samples.scans} scans`).join("; ");
-  const sides = ["left", "right"].flatMap((side, k) => [element("i", { style: `background:${RUN_COLOURS[k]}` }), `${data.names[k]} (${side}) `]);
-  document.querySelector("#runs").append(...sides);
+  document.querySelector("#kind").textContent = data.runs.map((run, k) => `${data.names[k]}: ${run.name}, ${run.kind}, ${run.samples.scans} scans`).join("; ");
   const walls = [...RUN_COLOURS, BOTH_COLOUR].flatMap((colour, k) => [element("i", { style: `background:${colour}` }), `${data.names[k] ?? "both"} `]);
   document.querySelector("#walls").append("walls of ", ...walls);
   const one = () => document.querySelector("#pair").classList.contains("one");
   const { views } = new Pair(data.runs);
+  const shown = new Map(views.flatMap(({ layers }) => layers.filter(({ on }) => on).map(({ name, colours }) => [name, colours])));
+  const key = Array.from(shown).flatMap(([name, colours]) => [element("i", { style: `background:${stripes(colours)}` }), `${name} `]);
+  document.querySelector("#runs").append(`left ${data.names[0]}, right ${data.names[1]}: `, ...key);
   for (const on of [true, false]) addEventListener(on ? "beforeprint" : "afterprint", () => views.forEach((view) => view.print(on, one() ? PAPER : PAPER / 2 - 10)));
   showApart(data.apart);
   fillTable("#figures", data.names, data.figures);

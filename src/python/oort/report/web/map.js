@@ -321,7 +321,7 @@ class MapView {
       box.addEventListener("change", () => (box.checked ? entry.layer.addTo(this.map) : entry.layer.remove()));
       const swatch = entry.key.length ? null : element("i", { style: `background:${stripes(entry.colours)}` });
       place.append(element("label", {}, box, swatch, entry.name));
-      if (entry.key.length) place.append(element("p", { class: "key" }, ...entry.key.flatMap((text, k) => [element("i", { style: `background:${entry.colours[k]}` }), `${text} `])));
+      if (entry.key.length) place.append(element("p", { class: "key" }, ...entry.key.flatMap((text, k) => [element("span", {}, element("i", { style: `background:${entry.colours[k]}` }), text), " "])));
     }
   }
 }
