@@ -19,7 +19,8 @@ namespace oort {
 enum class ScanOutcome {
   kNode,     ///< the scan made a node
   kLocated,  ///< it was located relative to the last node
-  kSkipped,  ///< it had too few returns, or was the scan before once more: located by odometry alone, if there is a node
+  kSkipped,  ///< it had too few returns, or was the scan before once more: located by odometry alone, if there is a
+             ///< node
 };
 
 /// As reports, messages and Python have it.

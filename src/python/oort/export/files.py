@@ -35,11 +35,10 @@ def write_atomically(path: Path, data: bytes) -> None:
     What a link points to is written. A device or a pipe stays what it is, and is written to.
     """
     try:
-        path = Path(os.path.realpath(path))
         if path.exists() and not path.is_file() and not path.is_dir():
             _write_through(path, data)
         else:
-            _replace(path, data)
+            _replace(Path(os.path.realpath(path)), data)
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         why = error.strerror if isinstance(error, OSError) else error
         raise OortError(f"{path} cannot be written: {why}; check the directory and the free space") from None

@@ -124,6 +124,8 @@ def recording_name(path: Path) -> str:
 
 def _check_readable(path: Path) -> None:
     """Raises InputError for what is neither a bag nor may be a CARMEN log."""
+    if not path.exists() and path.with_name(f"{path.name}{_MAP}").is_file():
+        raise InputError(f"{path} is a saved map; to go on with it, give a recording and --resume {path}")
     check_regular(path)
     if path.is_dir():
         return
@@ -131,10 +133,6 @@ def _check_readable(path: Path) -> None:
         with path.open("rb") as stream:
             head = stream.read(4096)
     except OSError as error:
-        if isinstance(error, FileNotFoundError) and path.with_name(f"{path.name}{_MAP}").is_file():
-            raise InputError(
-                f"{path} is a saved map, not a recording; to go on with it, give a recording and --resume {path}"
-            ) from None
         raise InputError(f"{path} cannot be read: {error.strerror}; check the path") from None
     if not head:
         raise InputError(f"{path} is empty; copy it again, or record it again")
