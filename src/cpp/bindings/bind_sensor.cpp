@@ -34,20 +34,18 @@ void bind_sensor(py::module_& m) {
           "align",
           [](const ReferenceScan& reference, double time, double angle_min, double angle_increment, double range_min,
              double range_max, const Ranges& ranges, const std::vector<PoseTuple>& guesses) {
-            const PointCloud cloud = cloud_of(time, angle_min, angle_increment, range_min, range_max, ranges);
-            std::vector<PairMatch> matches;
-            matches.reserve(guesses.size());
-            for (const PoseTuple& guess : guesses) matches.push_back(reference.align(cloud, pose_of(guess)));
-            const auto best = std::min_element(matches.begin(), matches.end(),
-                                               [](const PairMatch& a, const PairMatch& b) { return a.cost < b.cost; });
-            if (best == matches.end()) throw py::value_error("align: needs a guess");
-            return py::make_tuple(tuple_of(best->T_reference_scan), best->cost, best->inlier_ratio, best->degenerate);
+            if (guesses.empty()) throw py::value_error("align: needs a guess");
+            std::vector<Pose2> poses(guesses.size());
+            std::transform(guesses.begin(), guesses.end(), poses.begin(), pose_of);
+            const PairMatch best =
+                reference.align_best(cloud_of(time, angle_min, angle_increment, range_min, range_max, ranges), poses,
+                                     SensorTuning::kPointsOfPairs);
+            return py::make_tuple(tuple_of(best.T_reference_scan), best.misfit, best.inlier_ratio, best.degenerate);
           },
           py::arg("time"), py::arg("angle_min"), py::arg("angle_increment"), py::arg("range_min"), py::arg("range_max"),
           py::arg("ranges"), py::arg("guesses"),
-          "Lays a scan on this one from some guesses (T_reference_scan): the pose with the least cost, the cost (mean "
-          "squared distance [m^2]), the share of points that lie on the reference, and whether a direction is left "
-          "open.");
+          "Lays a scan on this one from some guesses (T_reference_scan): the pose that fits best, the mean squared "
+          "distance of the points that lie on the reference [m^2], their share, and whether a direction is left open.");
 }
 
 }  // namespace oort

@@ -596,8 +596,8 @@ class ReferenceScan:
         ranges: ArrayLike,
         guesses: Sequence[tuple[float, float, float]],
     ) -> tuple[tuple[float, float, float], float, float, bool]:
-        """Lays a scan on this one from some guesses (T_reference_scan): the pose with the least cost, the cost (mean
-        squared distance [m^2]), the share of points that lie on the reference, and whether a direction is left open.
+        """Lays a scan on this one from some guesses (T_reference_scan): the pose that fits best, the mean squared
+        distance of the points that lie on the reference [m^2], their share, and whether a direction is left open.
         """
 
 class Merged:

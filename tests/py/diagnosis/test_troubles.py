@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+from helpers.hall import MOUNT as HALL_MOUNT
+from helpers.hall import hall_drive
 from oort import Parameters
-from oort.diagnosis import Trouble
-from oort.poses import Array, compose
+from oort.diagnosis import Observer, Trouble
+from oort.poses import Array, between, compose, wrap_angle
 from oort.recording import Pose, Scan
 from oort.session import Session
 from oort.simulate import Drive, Sensor, SimulationConfig, simulate_drive
@@ -101,6 +103,35 @@ def test_a_laser_that_looks_elsewhere_than_its_mount_says(degrees: int) -> None:
     assert found["mount_yaw"].evidence["yaw_error_rad"] == pytest.approx(math.radians(degrees), abs=0.1) or (
         abs(degrees) == 180 and abs(found["mount_yaw"].evidence["yaw_error_rad"]) > 3.0
     )
+
+
+def test_in_a_hall_nothing_is_told_of_a_sound_robot() -> None:
+    assert troubles_of(hall_drive(), HALL_MOUNT) == {}
+
+
+def test_in_a_hall_most_pairs_of_scans_fit() -> None:
+    observer = Observer(HALL_MOUNT)
+    for scan in hall_drive():
+        observer.add(scan)
+    assert np.mean([sample.fits for sample in observer.samples]) > 0.9
+    apart = [between(sample.odometry, sample.scans) for sample in observer.samples if not sample.degenerate]
+    assert np.median([math.hypot(x, y) for x, y, _ in apart]) < 0.02
+
+
+@pytest.mark.parametrize("spoil", [mirrored, turned_wrongly])
+def test_in_a_hall_scans_that_turn_the_other_way(spoil: Callable[[Scan], Scan]) -> None:
+    assert next(iter(troubles_of([spoil(scan) for scan in hall_drive()], HALL_MOUNT))) == "turn_sign"
+
+
+@pytest.mark.parametrize("degrees", [180, 90, -40])
+@pytest.mark.parametrize("every", [1, 4], ids=["", "few scans"])
+def test_in_a_hall_a_turned_laser(degrees: int, every: int) -> None:
+    x, y, _ = HALL_MOUNT
+    found = troubles_of(hall_drive()[::every], (x, y, math.radians(-degrees)))
+    assert next(iter(found)) == "mount_yaw"
+    assert not {code for code in found if code.startswith("odometry")}
+    yaw = found["mount_yaw"].evidence["yaw_error_rad"]
+    assert abs(wrap_angle(yaw - math.radians(degrees))) < 0.1
 
 
 @pytest.mark.parametrize("scans_late", [10, -6])

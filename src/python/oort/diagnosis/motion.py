@@ -143,4 +143,4 @@ def _clock_offset(observer: Observer) -> Trouble | None:
 
 def _is_inside(sample: Sample, stamps: Array) -> bool:
     most = float(_LAGS[-1])
-    return sample.inlier_ratio >= 0.7 and stamps[0] + most <= sample.begin and sample.end <= stamps[-1] - most
+    return sample.fits and stamps[0] + most <= sample.begin and sample.end <= stamps[-1] - most

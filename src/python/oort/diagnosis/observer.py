@@ -13,12 +13,19 @@ from oort.poses import between, compose
 from oort.recording.types import Pose, Scan
 
 _EVERY = 5  # scans between samples, at first
+# Turns are rare in halls: of three made-up drives of 5 minutes fewer than 15 turning samples were taken otherwise.
+_TURNING = 0.02  # [rad] between two scans by odometry
+_EVERY_TURN, _TURNS = 2, 60  # scans between samples that turn, for so many samples
 _STANDING = 20  # scans between samples while odometry stands
 _SAMPLES = 250  # that are taken so often; then ten times as rarely
 _RARER = 10
 _MOVED = (0.005, 0.005)  # [m], [rad] between two scans
-_LONGEST = 0.4  # [s] between two scans: more, and a robot that turns is too far from where it was
-_POINTS = 60  # of a scan that is laid on another
+# No robot gets too far in 0.4 s to lay one scan on the other. Some logs have a scan a second; there odometry tells
+# whether it did, unless it is wrong, and then the scans do not fit.
+_AT_ONCE, _LONGEST = 0.4, 2.0  # [s] between two scans,
+_FARTHEST = (0.5, 0.5)  # [m], [rad] by odometry in more than the first of these
+# Chosen on fr-clinic (docs/troubles.md), checked on halls, homes and recordings.
+_OVERLAP, _MISFIT = 0.5, 0.03**2  # share of the points, [m^2] of these
 _KEPT = 40_000  # scans whose odometry is remembered, and 1/20 as many samples
 
 
@@ -32,11 +39,16 @@ class Sample(NamedTuple):
     """T_before_after by odometry"""
     scans: Pose
     """by the scans alone"""
-    cost: float
-    """mean squared distance that is left [m^2]"""
+    misfit: float
+    """mean squared distance that is left where the scans overlap [m^2]"""
     inlier_ratio: float
     degenerate: bool
     """whether the scans leave a direction open"""
+
+    @property
+    def fits(self) -> bool:
+        """Whether most of one scan lies on the other, and closely."""
+        return self.inlier_ratio >= _OVERLAP and self.misfit <= _MISFIT
 
 
 class Observer:
@@ -48,6 +60,7 @@ class Observer:
         self._before: Scan | None = None
         self._since = 0
         self._taken = 0
+        self._turns = 0
         self.samples: list[Sample] = []
         self.stamps: list[float] = []
         """of all scans [s]"""
@@ -80,9 +93,14 @@ class Observer:
         self._paused = True
 
     def _is_due(self, before: Scan, scan: Scan) -> bool:
-        if not 0.0 < scan.time - before.time <= _LONGEST:
-            return False
+        apart = scan.time - before.time
         x, y, theta = between(before.odometry, scan.odometry).tolist()
+        near = max(abs(x), abs(y)) < _FARTHEST[0] and abs(theta) < _FARTHEST[1]
+        if not 0.0 < apart <= (_LONGEST if near else _AT_ONCE):
+            return False
+        if abs(theta) > _TURNING and self._turns < _TURNS and self._since >= _EVERY_TURN:
+            self._turns += 1
+            return True
         stands = max(abs(x), abs(y)) < _MOVED[0] and abs(theta) < _MOVED[1]
         rarer = _RARER if self._taken >= _SAMPLES else 1
         return self._since >= (_STANDING if stands else _EVERY) * rarer
@@ -90,22 +108,14 @@ class Observer:
     def _compare(self, before: Scan, scan: Scan) -> None:
         moved: NDArray[np.float64] = between(compose(before.odometry, self._mount), compose(scan.odometry, self._mount))
         x, y, theta = moved.tolist()
-        stride = max(1, len(scan.ranges) // _POINTS)
-        time, angle_min, increment, range_min, range_max, ranges = scan.readings
         guesses = [(0.0, 0.0, 0.0), (x, y, theta), (x, y, -theta), (-x, -y, theta)]
-        pose, cost, inlier_ratio, degenerate = ReferenceScan(*before.readings).align(
-            time, angle_min, increment * stride, range_min, range_max, ranges[::stride], guesses
-        )
-        self.samples.append(Sample(before.time, scan.time, (x, y, theta), pose, cost, inlier_ratio, degenerate))
+        pose, misfit, inlier_ratio, degenerate = ReferenceScan(*before.readings).align(*scan.readings, guesses)
+        self.samples.append(Sample(before.time, scan.time, (x, y, theta), pose, misfit, inlier_ratio, degenerate))
 
 
 def columns(samples: Sequence[Sample]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
     """Motions (n, 3) by odometry and by scans, and whether a direction is open, of the samples that fit well."""
-    good = [sample for sample in samples if sample.inlier_ratio >= _FITS and sample.cost <= _MISFIT]
+    good = [sample for sample in samples if sample.fits]
     odometry = np.array([sample.odometry for sample in good], dtype=np.float64).reshape(-1, 3)
     scans = np.array([sample.scans for sample in good], dtype=np.float64).reshape(-1, 3)
     return odometry, scans, np.array([sample.degenerate for sample in good], dtype=np.bool_)
-
-
-_FITS = 0.7
-_MISFIT = 0.03**2  # [m^2]
