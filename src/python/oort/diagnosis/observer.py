@@ -98,6 +98,8 @@ class Observer:
         near = max(abs(x), abs(y)) < _FARTHEST[0] and abs(theta) < _FARTHEST[1]
         if not 0.0 < apart <= (_LONGEST if near else _AT_ONCE):
             return False
+        if np.array_equal(before.ranges, scan.ranges, equal_nan=True):
+            return False  # sent again, perhaps: it tells of no motion
         if abs(theta) > _TURNING and self._turns < _TURNS and self._since >= _EVERY_TURN:
             self._turns += 1
             return True
