@@ -132,4 +132,5 @@ def test_a_new_map_learns_the_laser_anew() -> None:
             "costs": {"stamped": 0.0, "reversed": 0.0, "at_once": 0.0},
         },
         "body": [],
+        "repeated_scans": 0,
     }

@@ -62,7 +62,12 @@ def replay_to_folder(
         )
     check_name(map_path)
     make_folder(folder)
-    make_folder(Path(normalise_map_path(map_path)).parent)
+    map_folder = Path(normalise_map_path(map_path)).parent
+    if not map_folder.is_dir():  # of --map: a name that is misspelt makes no folder
+        raise InputError(
+            f"{map_folder} is no folder, so the map cannot be saved there; make it, or choose another place"
+        )
+    make_folder(map_folder)
     if not options.quiet:
         for note in recording.notes:
             print(f"note: {note}", file=sys.stderr)
