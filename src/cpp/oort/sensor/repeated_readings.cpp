@@ -19,10 +19,12 @@ bool is_same(float a, float b) {
 
 bool RepeatedReadings::add(const std::vector<float>& ranges, std::size_t returns, const Pose2& T_odom_base) {
   if (!std::equal(ranges.begin(), ranges.end(), ranges_.begin(), ranges_.end(), is_same)) {
+    if (!ranges_.empty()) ++changes_;
     ranges_ = ranges;
     T_odom_base_ = T_odom_base;
     return false;
   }
+  if (changes_ < SensorTuning::kChangedReadings) return false;
   if (returns < SensorTuning::kRepeatedReturns) return false;  // no return anywhere looks the same everywhere
   const Pose2 moved = between(T_odom_base_, T_odom_base);
   if (moved.translation().norm() < SensorTuning::kRepeatedMotion &&

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
 namespace oort {
 
@@ -42,8 +43,9 @@ struct SensorTuning {
   static constexpr double kJoinedAge = 0.25;
 
   // Readings of the scan before, once more.
-  static constexpr std::size_t kRepeatedReturns = 20;  ///< at least
-  static constexpr double kRepeatedMotion = 0.005;     ///< [m, rad] by odometry since they came first: it creeps less
+  static constexpr std::size_t kRepeatedReturns = 20;    ///< at least
+  static constexpr std::uint64_t kChangedReadings = 10;  ///< scans that were others than the one before, until then
+  static constexpr double kRepeatedMotion = 0.005;       ///< [m, rad] by odometry since they came first: it creeps less
 
   // The robot's own body.
   static constexpr int kBodyBins = 720;            ///< of half a degree
